@@ -1,0 +1,25 @@
+#pragma once
+// What a step is driven by: one commanded pose and grip for each tool. The recorder stores exactly this, so a replay of the
+// stored Inputs gives the same states bit for bit.
+
+#include <array>
+#include <cstdint>
+
+#include "base/pose.h"
+
+namespace filum {
+
+struct ToolInput {
+  Pose X_WD;                     // commanded pose of the tool frame (origin at the jaw tip, +z towards the handle)
+  double grip_angle = 0.3;       // [rad], commanded opening
+  double grip_force = 0.0;       // [N], measured squeeze; used only if has_grip_force
+  bool has_grip_force = false;
+  bool valid = false;            // false: no live device; the tool keeps its last pose and scoring pauses
+  std::uint32_t buttons = 0;     // 1 clutch, 2 cut, 4 next
+};
+
+struct Inputs {
+  std::array<ToolInput, 3> tools;
+};
+
+}  // namespace filum
