@@ -1,0 +1,193 @@
+#include "base/block_cholesky.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace filum {
+namespace {
+
+constexpr int kReservePerNode = 24;  // blocks a column; a tight knot of 300 nodes uses about 8
+
+/// L^-1 of the Cholesky factor of the symmetric 4 x 4 matrix in `a` (lower half read), written over it.
+bool invert_factor(Mat4& a) noexcept {
+  Mat4 l = Mat4::Zero();
+  for (int j = 0; j < 4; ++j) {
+    double pivot = a(j, j);
+    for (int k = 0; k < j; ++k) pivot -= l(j, k) * l(j, k);
+    if (!(pivot > 1e-13 * std::abs(a(j, j)))) return false;
+    const double d = std::sqrt(pivot);
+    l(j, j) = d;
+    for (int i = j + 1; i < 4; ++i) {
+      double s = a(i, j);
+      for (int k = 0; k < j; ++k) s -= l(i, k) * l(j, k);
+      l(i, j) = s / d;
+    }
+  }
+  a.setZero();
+  for (int j = 0; j < 4; ++j) {
+    a(j, j) = 1.0 / l(j, j);
+    for (int i = j + 1; i < 4; ++i) {
+      double s = 0.0;
+      for (int k = j; k < i; ++k) s -= l(i, k) * a(k, j);
+      a(i, j) = s / l(i, i);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+BlockCholesky::BlockCholesky(int max_nodes) {
+  const auto n = static_cast<std::size_t>(max_nodes);
+  const std::size_t words = (n + 63) / 64;
+  graph_.reserve(n * words);
+  fill_.reserve(n * words);
+  order_.reserve(n);
+  position_.reserve(n);
+  degree_.reserve(n);
+  column_start_.reserve(n + 1);
+  row_.reserve(n * kReservePerNode);
+  update_.reserve(n * kReservePerNode * 8);
+  diagonal_.reserve(n);
+  lower_.reserve(n * kReservePerNode);
+}
+
+void BlockCholesky::begin_pattern(int n) noexcept {
+  n_ = n;
+  words_ = (n + 63) / 64;
+  graph_.assign(static_cast<std::size_t>(n) * words_, 0);
+}
+
+void BlockCholesky::connect(int i, int j) noexcept {
+  graph_[static_cast<std::size_t>(i) * words_ + j / 64] |= std::uint64_t{1} << (j % 64);
+  graph_[static_cast<std::size_t>(j) * words_ + i / 64] |= std::uint64_t{1} << (i % 64);
+}
+
+void BlockCholesky::analyse() noexcept {
+  order();
+  build_structure();
+  build_updates();
+  diagonal_.resize(static_cast<std::size_t>(n_));
+  lower_.resize(row_.size());
+}
+
+// Minimum degree: eliminate the node with the fewest neighbours, join its neighbours to each other, repeat. Chain nodes
+// (the great majority) have the least possible degree, so a scan that restarts near the last pick finds one at once.
+void BlockCholesky::order() noexcept {
+  fill_ = graph_;
+  order_.clear();
+  position_.assign(static_cast<std::size_t>(n_), -1);
+  degree_.assign(static_cast<std::size_t>(n_), 0);
+  auto count = [&](int i) {
+    int d = 0;
+    for (int w = 0; w < words_; ++w) d += std::popcount(fill_[static_cast<std::size_t>(i) * words_ + w]);
+    return d;
+  };
+  for (int i = 0; i < n_; ++i) degree_[i] = count(i);
+  int scan = 0;
+  int floor = 0;  // no remaining node has a degree below this
+  while (static_cast<int>(order_.size()) < n_) {
+    int best = -1;
+    for (int k = 0; k < n_; ++k) {
+      const int i = (scan + k) % n_;
+      if (position_[i] >= 0) continue;
+      if (best < 0 || degree_[i] < degree_[best]) best = i;
+      if (degree_[best] <= floor) break;
+    }
+    floor = std::max(0, degree_[best] - 1);
+    scan = best;
+    position_[best] = static_cast<int>(order_.size());
+    order_.push_back(best);
+    const std::uint64_t* row = &fill_[static_cast<std::size_t>(best) * words_];
+    for (int w = 0; w < words_; ++w) {
+      for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
+        const int j = w * 64 + std::countr_zero(bits);
+        std::uint64_t* other = &fill_[static_cast<std::size_t>(j) * words_];
+        for (int u = 0; u < words_; ++u) other[u] |= row[u];
+        other[j / 64] &= ~(std::uint64_t{1} << (j % 64));
+        other[best / 64] &= ~(std::uint64_t{1} << (best % 64));
+        degree_[j] = count(j);
+      }
+    }
+  }
+}
+
+void BlockCholesky::build_structure() noexcept {
+  column_start_.clear();
+  row_.clear();
+  for (int k = 0; k < n_; ++k) {
+    column_start_.push_back(static_cast<int>(row_.size()));
+    const std::uint64_t* row = &fill_[static_cast<std::size_t>(order_[k]) * words_];
+    for (int w = 0; w < words_; ++w)
+      for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1)
+        row_.push_back(position_[w * 64 + std::countr_zero(bits)]);
+    std::sort(row_.begin() + column_start_.back(), row_.end());
+  }
+  column_start_.push_back(static_cast<int>(row_.size()));
+}
+
+void BlockCholesky::build_updates() noexcept {
+  update_.clear();
+  for (int k = 0; k < n_; ++k) {
+    for (int b = column_start_[k]; b < column_start_[k + 1]; ++b) {
+      int target = column_start_[row_[b]];
+      for (int a = b + 1; a < column_start_[k + 1]; ++a) {
+        while (row_[target] != row_[a]) ++target;
+        update_.push_back(target);
+      }
+    }
+  }
+}
+
+BlockCholesky::Slot BlockCholesky::find(int i, int j) const noexcept {
+  int p = position_[i];
+  int q = position_[j];
+  const bool transposed = p < q;  // the factor keeps the lower half: row position above column position
+  if (transposed) std::swap(p, q);
+  const auto begin = row_.begin() + column_start_[q];
+  const auto end = row_.begin() + column_start_[q + 1];
+  const auto found = std::lower_bound(begin, end, p);
+  if (found == end || *found != p) return {};
+  return {static_cast<int>(found - row_.begin()), transposed};
+}
+
+void BlockCholesky::set_zero() noexcept {
+  for (Mat4& m : diagonal_) m.setZero();
+  for (Mat4& m : lower_) m.setZero();
+}
+
+bool BlockCholesky::factor() noexcept {
+  const int* update = update_.data();
+  for (int k = 0; k < n_; ++k) {
+    Mat4& inverse = diagonal_[k];
+    if (!invert_factor(inverse)) return false;
+    const int begin = column_start_[k];
+    const int end = column_start_[k + 1];
+    for (int b = begin; b < end; ++b) lower_[b] = (lower_[b] * inverse.transpose()).eval();
+    for (int b = begin; b < end; ++b) {
+      const Mat4 lb = lower_[b].transpose();
+      diagonal_[row_[b]].noalias() -= lower_[b] * lb;
+      for (int a = b + 1; a < end; ++a) lower_[*update++].noalias() -= lower_[a] * lb;
+    }
+  }
+  return true;
+}
+
+void BlockCholesky::solve(Eigen::Ref<Eigen::Matrix4Xd> b) const noexcept {
+  for (int k = 0; k < n_; ++k) {
+    auto y = b.col(order_[k]);
+    const Eigen::Vector4d solved = diagonal_[k] * y;
+    y = solved;
+    for (int a = column_start_[k]; a < column_start_[k + 1]; ++a)
+      b.col(order_[row_[a]]).noalias() -= lower_[a] * solved;
+  }
+  for (int k = n_ - 1; k >= 0; --k) {
+    Eigen::Vector4d y = b.col(order_[k]);
+    for (int a = column_start_[k]; a < column_start_[k + 1]; ++a)
+      y.noalias() -= lower_[a].transpose() * b.col(order_[row_[a]]);
+    b.col(order_[k]).noalias() = diagonal_[k].transpose() * y;
+  }
+}
+
+}  // namespace filum

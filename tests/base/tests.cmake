@@ -1,0 +1,5 @@
+foreach(name ensure error exchange hash pose rng units yaml_file)
+  filum_test(base/${name} filum_base)
+endforeach()
+filum_fuzz(base/units filum_base)
+filum_fuzz(base/yaml_file filum_base)
