@@ -1,0 +1,35 @@
+#pragma once
+// Plays a scripted demonstration (pose_script.h) as a device: one sample a tool at every millisecond of scene
+// time, so that what a step is driven by does not depend on when poll() happened to be called.
+
+#include <string>
+#include <vector>
+
+#include "devices/device.h"
+#include "devices/pose_script.h"
+
+namespace filum {
+
+class Demonstrator final : public Device {
+ public:
+  /// Throws InputError for a bad file.
+  explicit Demonstrator(const std::string& path);
+  explicit Demonstrator(PoseScript script);
+
+  const std::string& name() const override { return name_; }
+  /// A caller that comes late gets the newest samples only; those it missed are counted as lost.
+  void poll(std::int64_t now_us, std::vector<DeviceSample>& out) noexcept override;
+  DeviceHealth health() const noexcept override { return health_; }
+  const PoseScript& script() const noexcept { return script_; }
+
+ private:
+  static constexpr std::int64_t kPeriod = 1000;  // [us]
+
+  PoseScript script_;
+  std::string name_;
+  std::int64_t next_us_ = 0;  // [us], scene time of the next sample
+  std::uint64_t moved_ = 0;   // tools the script moves
+  DeviceHealth health_;
+};
+
+}  // namespace filum

@@ -1,0 +1,119 @@
+#include "devices/pose_track.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "devices/monotone_cubic.h"
+
+namespace filum {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+double minimum_jerk(double u) noexcept {
+  return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
+}
+double smoothstep(double u) noexcept {
+  return u * u * (3.0 - 2.0 * u);
+}
+
+Vec3 radial_part(const PoseArc& arc, const Vec3& p) noexcept {
+  const Vec3 d = p - arc.centre_W;
+  return d - d.dot(arc.axis_W) * arc.axis_W;
+}
+
+std::vector<double> column(const std::vector<PoseKey>& keys, double (*pick)(const PoseKey&)) {
+  std::vector<double> values;
+  values.reserve(keys.size());
+  for (const PoseKey& key : keys) values.push_back(pick(key));
+  return values;
+}
+
+}  // namespace
+
+double axis_distance(const PoseArc& arc, const Vec3& p) noexcept {
+  return radial_part(arc, p).norm();
+}
+
+double fitting_turns(const PoseArc& arc, const Vec3& p0, const Vec3& p1) noexcept {
+  const Vec3 r0 = radial_part(arc, p0), r1 = radial_part(arc, p1);
+  const double remainder = std::atan2(r0.cross(r1).dot(arc.axis_W), r0.dot(r1)) / kTurn;
+  return remainder + std::round(arc.turns - remainder);
+}
+
+Vec3 arc_end(const PoseArc& arc, const Vec3& p0, double radius, double rise) noexcept {
+  const Vec3 r0 = radial_part(arc, p0);
+  const double height = (p0 - arc.centre_W).dot(arc.axis_W) + rise;
+  const Vec3 direction = Eigen::AngleAxisd(kTurn * arc.turns, arc.axis_W) * r0.normalized();
+  return arc.centre_W + height * arc.axis_W + radius * direction;
+}
+
+Vec3 arc_point(const PoseArc& arc, const Vec3& p0, const Vec3& p1, double s) noexcept {
+  const Vec3 r0 = radial_part(arc, p0);
+  const double radius = (1.0 - s) * r0.norm() + s * axis_distance(arc, p1);
+  const double h0 = (p0 - arc.centre_W).dot(arc.axis_W), h1 = (p1 - arc.centre_W).dot(arc.axis_W);
+  const double angle = kTurn * fitting_turns(arc, p0, p1) * s;
+  const Vec3 direction = Eigen::AngleAxisd(angle, arc.axis_W) * r0.normalized();
+  return arc.centre_W + ((1.0 - s) * h0 + s * h1) * arc.axis_W + radius * direction;
+}
+
+PoseTrack::PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force)
+    : tool_(tool), keys_(std::move(keys)), has_grip_force_(has_grip_force) {
+  const std::size_t n = keys_.size();
+  std::vector<bool> stop(n), tip_rest(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    stop[i] = keys_[i].stop;
+    // An arc starts and ends at rest, so the neighbouring cubics must too.
+    tip_rest[i] = stop[i] || keys_[i].arc.has_value() || (i + 1 < n && keys_[i + 1].arc.has_value());
+  }
+  const auto t = column(keys_, [](const PoseKey& k) { return k.t; });
+  const auto x = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.p_W.x(); }), tip_rest);
+  const auto y = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.p_W.y(); }), tip_rest);
+  const auto z = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.p_W.z(); }), tip_rest);
+  angle_slopes_ = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.grip_angle; }), stop);
+  force_slopes_ = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.grip_force; }), stop);
+  tip_slopes_.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) tip_slopes_.emplace_back(x[i], y[i], z[i]);
+}
+
+std::size_t PoseTrack::key_at(double t) const noexcept {
+  const auto after = std::upper_bound(keys_.begin(), keys_.end(), t,
+                                      [](double time, const PoseKey& key) { return time < key.t; });
+  return after == keys_.begin() ? 0 : static_cast<std::size_t>(after - keys_.begin()) - 1;
+}
+
+Vec3 PoseTrack::tip_in_segment(std::size_t i, double u) const noexcept {
+  const PoseKey& a = keys_[i];
+  const PoseKey& b = keys_[i + 1];
+  if (b.arc) return arc_point(*b.arc, a.p_W, b.p_W, minimum_jerk(u));
+  Vec3 p;
+  for (int c = 0; c < 3; ++c)
+    p[c] = hermite(a.p_W[c], b.p_W[c], tip_slopes_[i][c], tip_slopes_[i + 1][c], b.t - a.t, u);
+  return p;
+}
+
+DeviceSample PoseTrack::at(double t) const noexcept {
+  const std::size_t i = key_at(t);
+  const PoseKey& a = keys_[i];
+  DeviceSample sample;
+  sample.tool = tool_;
+  sample.host_time_us = sample.device_time_us = static_cast<std::int64_t>(std::llround(t * 1e6));
+  sample.has_pose = sample.has_grip_angle = true;
+  sample.has_grip_force = has_grip_force_;
+  sample.X_WD = {a.p_W, a.q};
+  sample.grip_angle = a.grip_angle;
+  sample.grip_force = a.grip_force;
+  if (t < a.t) return sample;  // before the first key: nothing is pressed yet
+  sample.buttons = a.buttons;
+  if (i + 1 == keys_.size() || t == a.t) return sample;
+  const PoseKey& b = keys_[i + 1];
+  const double h = b.t - a.t, u = (t - a.t) / h;
+  sample.X_WD.p = tip_in_segment(i, u);
+  sample.X_WD.q = a.q.slerp(smoothstep(u), b.q).normalized();
+  sample.grip_angle = hermite(a.grip_angle, b.grip_angle, angle_slopes_[i], angle_slopes_[i + 1], h, u);
+  sample.grip_force = hermite(a.grip_force, b.grip_force, force_slopes_[i], force_slopes_[i + 1], h, u);
+  return sample;
+}
+
+}  // namespace filum

@@ -1,0 +1,72 @@
+#pragma once
+// The path of one tool through its keys: position and grip by monotone cubic, arcs about an axis with
+// minimum-jerk timing (T. Flash and N. Hogan, J. Neurosci. 5 (1985) 1688-1703), orientation by slerp with
+// smoothstep timing.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/pose.h"
+#include "devices/device.h"
+
+namespace filum {
+
+/// The tip goes round an axis on its way to a key; radius and height along the axis change linearly with the
+/// angle.
+struct PoseArc {
+  Vec3 centre_W = Vec3::Zero();  // [m], a point on the axis
+  Vec3 axis_W = Vec3::UnitY();   // unit; right-hand rule gives the positive sense
+  double turns = 0.0;            // [1], signed
+};
+
+struct PoseKey {
+  double t = 0.0;              // [s]
+  Vec3 p_W = Vec3::Zero();     // [m], jaw tip
+  Quat q = Quat::Identity();   // unit; z towards the handle, x the way the jaws open
+  double grip_angle = 0.0;     // [rad]
+  double grip_force = 0.0;     // [N]
+  std::uint32_t buttons = 0;   // held from this key to the next
+  bool stop = false;           // velocity is zero here
+  std::optional<PoseArc> arc;  // how the tip gets here from the key before
+  std::string say;             // told to the trainee from here to the next key that says something
+};
+
+/// Point at fraction s of the arc from p0 to p1 (both [m], frame W).
+Vec3 arc_point(const PoseArc& arc, const Vec3& p0, const Vec3& p1, double s) noexcept;
+
+/// Whole turns from p0 to p1 about the arc's axis that come nearest to arc.turns.
+double fitting_turns(const PoseArc& arc, const Vec3& p0, const Vec3& p1) noexcept;
+
+/// Where the tip ends when it goes round by arc.turns from p0, to `radius` [m] and `rise` [m] further along
+/// the axis.
+Vec3 arc_end(const PoseArc& arc, const Vec3& p0, double radius, double rise) noexcept;
+
+/// Distance of a point from the arc's axis [m].
+double axis_distance(const PoseArc& arc, const Vec3& p) noexcept;
+
+/// Immutable once built; at() allocates nothing. Keys must be non-empty with strictly growing times.
+class PoseTrack {
+ public:
+  PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force);
+
+  int tool() const noexcept { return tool_; }
+  const std::vector<PoseKey>& keys() const noexcept { return keys_; }
+  /// Sample at time t [s]; before the first key the first pose, after the last key the last.
+  DeviceSample at(double t) const noexcept;
+  /// Index of the last key at or before t; 0 before the first.
+  std::size_t key_at(double t) const noexcept;
+
+ private:
+  Vec3 tip_in_segment(std::size_t i, double u) const noexcept;
+
+  int tool_;
+  std::vector<PoseKey> keys_;
+  bool has_grip_force_;
+  std::vector<Vec3> tip_slopes_;      // [m/s]
+  std::vector<double> angle_slopes_;  // [rad/s]
+  std::vector<double> force_slopes_;  // [N/s]
+};
+
+}  // namespace filum
