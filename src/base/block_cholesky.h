@@ -14,6 +14,13 @@ namespace filum {
 
 using Mat4 = Eigen::Matrix4d;
 
+/// The 3 x 3 block of the coordinates of a node, with nothing for its twist.
+inline Mat4 pad(const Eigen::Matrix3d& k) noexcept {
+  Mat4 m = Mat4::Zero();
+  m.topLeftCorner<3, 3>() = k;
+  return m;
+}
+
 class BlockCholesky {
  public:
   /// Where a block of the matrix lives; a slot found for (i, j) serves add() for exactly that order of i and j.

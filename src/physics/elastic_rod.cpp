@@ -1,0 +1,298 @@
+#include "physics/elastic_rod.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace filum {
+namespace {
+
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+using Vec12 = Eigen::Matrix<double, 12, 1>;
+
+double node_length(const RodState& s, int i) noexcept { return 0.5 * (s.rest_length[i - 1] + s.rest_length[i]); }
+
+bool joined(const RodState& s, int i) noexcept { return s.alive[i - 1] != 0 && s.alive[i] != 0; }
+
+double signed_angle(const Vec3& u, const Vec3& v, const Vec3& axis) noexcept {
+  return std::atan2(u.cross(v).dot(axis), u.dot(v));
+}
+
+Mat3 skew(const Vec3& v) noexcept {
+  Mat3 m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+/// First derivatives of kappa_1, kappa_2 and twist of node i with respect to (x_{i-1}, theta^{i-1}, x_i, theta^i, x_{i+1}).
+struct NodeGradient {
+  Vec12 kappa1 = Vec12::Zero(), kappa2 = Vec12::Zero(), twist = Vec12::Zero();
+};
+
+void scatter_edges(const Vec3& de, const Vec3& df, Vec12& out) noexcept {
+  out.segment<3>(0) = -de;
+  out.segment<3>(4) = de - df;
+  out.segment<3>(8) = df;
+}
+
+/// Shorthand of one inner node: tangents, directors and the tilde quantities of Bergou 2010.
+struct NodeFrame {
+  NodeFrame(const RodGeometry& g, int i)
+      : e(g.length[i - 1]), f(g.length[i]), chi(g.chi[i]), te(g.t.col(i - 1)), tf(g.t.col(i)), m1e(g.m1.col(i - 1)),
+        m2e(g.m2.col(i - 1)), m1f(g.m1.col(i)), m2f(g.m2.col(i)), kb(g.kb.col(i)), k1(g.kappa(0, i)), k2(g.kappa(1, i)),
+        tt((te + tf) / chi), d1((m1e + m1f) / chi), d2((m2e + m2f) / chi) {}
+  double e, f, chi;
+  Vec3 te, tf, m1e, m2e, m1f, m2f, kb;
+  double k1, k2;
+  Vec3 tt, d1, d2;
+};
+
+NodeGradient node_gradient(const NodeFrame& n) noexcept {
+  NodeGradient d;
+  scatter_edges((-n.k1 * n.tt + n.tf.cross(n.d2)) / n.e, (-n.k1 * n.tt - n.te.cross(n.d2)) / n.f, d.kappa1);
+  scatter_edges((-n.k2 * n.tt - n.tf.cross(n.d1)) / n.e, (-n.k2 * n.tt + n.te.cross(n.d1)) / n.f, d.kappa2);
+  d.kappa1[3] = -0.5 * n.kb.dot(n.m1e);
+  d.kappa1[7] = -0.5 * n.kb.dot(n.m1f);
+  d.kappa2[3] = -0.5 * n.kb.dot(n.m2e);
+  d.kappa2[7] = -0.5 * n.kb.dot(n.m2f);
+  d.twist.segment<3>(0) = -0.5 / n.e * n.kb;
+  d.twist.segment<3>(8) = 0.5 / n.f * n.kb;
+  d.twist.segment<3>(4) = -d.twist.segment<3>(0) - d.twist.segment<3>(8);
+  d.twist[3] = -1.0;
+  d.twist[7] = 1.0;
+  return d;
+}
+
+/// Adds c1 d2(kappa1) + c2 d2(kappa2) + ct d2(twist) of one node to h (lower and upper half).
+void add_second_derivative(const NodeFrame& n, double c1, double c2, double ct, Mat12& h) noexcept {
+  const Mat3 I = Mat3::Identity();
+  const Mat3 tt_tt = n.tt * n.tt.transpose();
+  const Mat3 pe = I - n.te * n.te.transpose();
+  const Mat3 pf = I - n.tf * n.tf.transpose();
+  const double ee = 1.0 / (n.e * n.e), ff = 1.0 / (n.f * n.f), ef = 1.0 / (n.e * n.f);
+  const double k = c1 * n.k1 + c2 * n.k2;
+  // With D = c1 d2 - c2 d1 and m = c1 m2 - c2 m1 both curvature components share one set of formulas.
+  const Vec3 d = c1 * n.d2 - c2 * n.d1;
+  const Vec3 me = c1 * n.m2e - c2 * n.m1e;
+  const Vec3 mf = c1 * n.m2f - c2 * n.m1f;
+  const Mat3 tf_d = n.tf.cross(d) * n.tt.transpose();
+  const Mat3 te_d = n.te.cross(d) * n.tt.transpose();
+  const Mat3 kb_e = n.kb * me.transpose();
+  const Mat3 kb_f = n.kb * mf.transpose();
+  Mat3 Hee = ee * (2.0 * k * tt_tt - tf_d - tf_d.transpose() - k / n.chi * pe + 0.25 * (kb_e + kb_e.transpose()));
+  Mat3 Hff = ff * (2.0 * k * tt_tt + te_d + te_d.transpose() - k / n.chi * pf + 0.25 * (kb_f + kb_f.transpose()));
+  Mat3 Hef = ef * (-k / n.chi * (I + n.te * n.tf.transpose()) + 2.0 * k * tt_tt - tf_d + te_d.transpose() - skew(d));
+  const Mat3 kb_te = n.kb * (n.te + n.tt).transpose();
+  const Mat3 kb_tf = n.kb * (n.tf + n.tt).transpose();
+  Hee -= 0.25 * ct * ee * (kb_te + kb_te.transpose());
+  Hff -= 0.25 * ct * ff * (kb_tf + kb_tf.transpose());
+  Hef += 0.5 * ct * ef * (2.0 / n.chi * skew(n.te) - n.kb * n.tt.transpose());
+
+  h.block<3, 3>(0, 0) += Hee;
+  h.block<3, 3>(0, 4) += Hef - Hee;
+  h.block<3, 3>(0, 8) -= Hef;
+  h.block<3, 3>(4, 0) += Hef.transpose() - Hee;
+  h.block<3, 3>(4, 4) += Hee - Hef - Hef.transpose() + Hff;
+  h.block<3, 3>(4, 8) += Hef - Hff;
+  h.block<3, 3>(8, 0) -= Hef.transpose();
+  h.block<3, 3>(8, 4) += Hef.transpose() - Hff;
+  h.block<3, 3>(8, 8) += Hff;
+
+  // Mixed with the angles: kappa1 pairs with m1, kappa2 with m2.
+  const Vec3 be = c1 * n.m1e + c2 * n.m2e;
+  const Vec3 bf = c1 * n.m1f + c2 * n.m2f;
+  Vec12 column = Vec12::Zero();
+  scatter_edges((0.5 * n.kb.dot(be) * n.tt - n.tf.cross(be) / n.chi) / n.e,
+                (0.5 * n.kb.dot(be) * n.tt + n.te.cross(be) / n.chi) / n.f, column);
+  h.col(3) += column;
+  h.row(3) += column.transpose();
+  scatter_edges((0.5 * n.kb.dot(bf) * n.tt - n.tf.cross(bf) / n.chi) / n.e,
+                (0.5 * n.kb.dot(bf) * n.tt + n.te.cross(bf) / n.chi) / n.f, column);
+  h.col(7) += column;
+  h.row(7) += column.transpose();
+  h(3, 3) -= 0.5 * n.kb.dot(me);
+  h(7, 7) -= 0.5 * n.kb.dot(mf);
+}
+
+void scatter_node_block(const Mat12& h, int i, const ChainSlots& slots, BlockCholesky& matrix) noexcept {
+  matrix.add_diagonal(i - 1, h.block<4, 4>(0, 0));
+  matrix.add_diagonal(i, h.block<4, 4>(4, 4));
+  matrix.add_diagonal(i + 1, h.block<4, 4>(8, 8));
+  matrix.add(slots.next[i - 1], h.block<4, 4>(0, 4));
+  matrix.add(slots.next[i], h.block<4, 4>(4, 8));
+  matrix.add(slots.second[i - 1], h.block<4, 4>(0, 8));
+}
+
+void add_stretch_hessian(const RodMaterial& m, const RodState& s, const RodGeometry& g, int j, Stiffness kind,
+                         const ChainSlots& slots, BlockCholesky& matrix) noexcept {
+  const double force = m.EA * (g.length[j] / s.rest_length[j] - 1.0);
+  const double k = m.EA / s.rest_length[j];
+  const Vec3 t = g.t.col(j);
+  double across = force / g.length[j];  // geometric stiffness: a stretched string resists sideways motion
+  if (kind == Stiffness::gauss_newton) across = std::max(0.0, across);
+  Mat4 block = Mat4::Zero();
+  block.topLeftCorner<3, 3>() = (k - across) * t * t.transpose() + across * Mat3::Identity();
+  matrix.add_diagonal(j, block);
+  matrix.add_diagonal(j + 1, block);
+  matrix.add(slots.next[j], -block);
+}
+
+}  // namespace
+
+RodMaterial RodMaterial::round_wire(double radius, double youngs_modulus, double poissons_ratio, double density) {
+  constexpr double pi = std::numbers::pi;
+  RodMaterial m;
+  m.radius = radius;
+  m.density = density;
+  m.EA = youngs_modulus * pi * radius * radius;
+  m.EI = youngs_modulus * pi * std::pow(radius, 4) / 4.0;
+  m.GJ = youngs_modulus / (2.0 * (1.0 + poissons_ratio)) * pi * std::pow(radius, 4) / 2.0;
+  return m;
+}
+
+double RodMaterial::mass_per_length() const { return density * std::numbers::pi * radius * radius; }
+
+Vec3 parallel_transport(const Vec3& d, const Vec3& a, const Vec3& b) noexcept {
+  const Vec3 axis = a.cross(b);
+  const double c = 1.0 + a.dot(b);
+  if (c < 1e-12) return d;  // half a turn within one step: no shortest rotation exists, keep the director
+  return d + axis.cross(d) + axis.cross(axis.cross(d)) / c;
+}
+
+RodState RodState::from_nodes(const Points& nodes, int capacity, bool naturally_straight) {
+  RodState s;
+  const int n = static_cast<int>(nodes.cols());
+  s.n = n;
+  s.x = Points::Zero(3, capacity);
+  s.x.leftCols(n) = nodes;
+  s.v = Points::Zero(3, capacity);
+  s.theta = s.theta_dot = s.ref_twist = s.rest_length = s.rest_twist = Eigen::VectorXd::Zero(capacity);
+  s.rest_kappa = Eigen::Matrix2Xd::Zero(2, capacity);
+  s.d1 = Points::Zero(3, capacity);
+  s.alive = Eigen::VectorXi::Ones(capacity);
+  Vec3 t0 = (nodes.col(1) - nodes.col(0)).normalized();
+  s.d1.col(0) = t0.unitOrthogonal();
+  for (int j = 0; j + 1 < n; ++j) {
+    const Vec3 e = nodes.col(j + 1) - nodes.col(j);
+    s.rest_length[j] = e.norm();
+    const Vec3 t = e / s.rest_length[j];
+    if (j > 0) {
+      const Vec3 d = parallel_transport(s.d1.col(j - 1), t0, t);
+      s.d1.col(j) = (d - d.dot(t) * t).normalized();
+    }
+    t0 = t;
+  }
+  if (!naturally_straight) {
+    RodGeometry g(capacity);
+    update_geometry(s, s.x, s.theta, g);
+    s.rest_kappa.leftCols(n) = g.kappa.leftCols(n);
+    s.rest_twist.head(n) = g.twist.head(n);
+  }
+  return s;
+}
+
+RodGeometry::RodGeometry(int capacity)
+    : length(Eigen::VectorXd::Zero(capacity)), t(Points::Zero(3, capacity)), d1(t), m1(t), m2(t), kb(t),
+      kappa(Eigen::Matrix2Xd::Zero(2, capacity)), chi(length), ref_twist(length), twist(length) {}
+
+void update_geometry(const RodState& reference, const Points& x, const Eigen::VectorXd& theta, RodGeometry& g) noexcept {
+  const int n = reference.n;
+  for (int j = 0; j + 1 < n; ++j) {
+    const Vec3 e = x.col(j + 1) - x.col(j);
+    g.length[j] = e.norm();
+    const Vec3 t = e / g.length[j];
+    const Vec3 t0 = (reference.x.col(j + 1) - reference.x.col(j)).normalized();
+    Vec3 d = parallel_transport(reference.d1.col(j), t0, t);
+    d = (d - d.dot(t) * t).normalized();
+    const Vec3 d2 = t.cross(d);
+    const double c = std::cos(theta[j]), s = std::sin(theta[j]);
+    g.t.col(j) = t;
+    g.d1.col(j) = d;
+    g.m1.col(j) = c * d + s * d2;
+    g.m2.col(j) = -s * d + c * d2;
+  }
+  for (int i = 1; i + 1 < n; ++i) {
+    const Vec3 te = g.t.col(i - 1), tf = g.t.col(i);
+    g.chi[i] = std::max(1e-9, 1.0 + te.dot(tf));
+    const Vec3 kb = 2.0 * te.cross(tf) / g.chi[i];
+    g.kb.col(i) = kb;
+    g.kappa(0, i) = 0.5 * kb.dot(g.m2.col(i - 1) + g.m2.col(i));
+    g.kappa(1, i) = -0.5 * kb.dot(g.m1.col(i - 1) + g.m1.col(i));
+    // Reference twist: what parallel transport in space leaves between neighbouring directors, continuous in time.
+    const double previous = reference.ref_twist[i];
+    Vec3 u = parallel_transport(g.d1.col(i - 1), te, tf);
+    u = std::cos(previous) * u + std::sin(previous) * tf.cross(u);
+    g.ref_twist[i] = previous + signed_angle(u, g.d1.col(i), tf);
+    g.twist[i] = theta[i] - theta[i - 1] + g.ref_twist[i];
+  }
+}
+
+double elastic_energy(const RodMaterial& m, const RodState& s, const RodGeometry& g) noexcept {
+  double u = 0.0;
+  for (int j = 0; j + 1 < s.n; ++j) {
+    if (!s.alive[j]) continue;
+    const double strain = g.length[j] / s.rest_length[j] - 1.0;
+    u += 0.5 * m.EA * strain * strain * s.rest_length[j];
+  }
+  for (int i = 1; i + 1 < s.n; ++i) {
+    if (!joined(s, i)) continue;
+    const double twist = g.twist[i] - s.rest_twist[i];
+    u += 0.5 / node_length(s, i) * (m.EI * (g.kappa.col(i) - s.rest_kappa.col(i)).squaredNorm() + m.GJ * twist * twist);
+  }
+  return u;
+}
+
+void add_elastic_gradient(const RodMaterial& m, const RodState& s, const RodGeometry& g, Eigen::Matrix4Xd& gradient) noexcept {
+  for (int j = 0; j + 1 < s.n; ++j) {
+    if (!s.alive[j]) continue;
+    const Vec3 force = m.EA * (g.length[j] / s.rest_length[j] - 1.0) * g.t.col(j);
+    gradient.col(j).head<3>() -= force;
+    gradient.col(j + 1).head<3>() += force;
+  }
+  for (int i = 1; i + 1 < s.n; ++i) {
+    if (!joined(s, i)) continue;
+    const NodeFrame frame(g, i);
+    const NodeGradient d = node_gradient(frame);
+    const double l = node_length(s, i);
+    const Eigen::Vector2d moment = m.EI / l * (g.kappa.col(i) - s.rest_kappa.col(i));
+    const double torque = m.GJ / l * (g.twist[i] - s.rest_twist[i]);
+    const Vec12 f = moment[0] * d.kappa1 + moment[1] * d.kappa2 + torque * d.twist;
+    gradient.col(i - 1) += f.segment<4>(0);
+    gradient.col(i) += f.segment<4>(4);
+    gradient.col(i + 1) += f.segment<4>(8);
+  }
+}
+
+void add_elastic_hessian(const RodMaterial& m, const RodState& s, const RodGeometry& g, Stiffness kind,
+                         const ChainSlots& slots, BlockCholesky& matrix) noexcept {
+  for (int j = 0; j + 1 < s.n; ++j)
+    if (s.alive[j]) add_stretch_hessian(m, s, g, j, kind, slots, matrix);
+  for (int i = 1; i + 1 < s.n; ++i) {
+    if (!joined(s, i)) continue;
+    const NodeFrame frame(g, i);
+    const NodeGradient d = node_gradient(frame);
+    const double kb = m.EI / node_length(s, i), kt = m.GJ / node_length(s, i);
+    Mat12 h;
+    h.noalias() = (kb * d.kappa1) * d.kappa1.transpose();
+    h.noalias() += (kb * d.kappa2) * d.kappa2.transpose();
+    h.noalias() += (kt * d.twist) * d.twist.transpose();
+    if (kind == Stiffness::exact) {
+      const Eigen::Vector2d bend = kb * (g.kappa.col(i) - s.rest_kappa.col(i));
+      add_second_derivative(frame, bend[0], bend[1], kt * (g.twist[i] - s.rest_twist[i]), h);
+    }
+    scatter_node_block(h, i, slots, matrix);
+  }
+}
+
+void accept_geometry(const RodGeometry& g, const Points& x, const Eigen::VectorXd& theta, RodState& s) noexcept {
+  s.x.leftCols(s.n) = x.leftCols(s.n);
+  s.theta.head(s.n) = theta.head(s.n);
+  s.d1.leftCols(s.n) = g.d1.leftCols(s.n);
+  s.ref_twist.head(s.n) = g.ref_twist.head(s.n);
+}
+
+double edge_tension(const RodMaterial& m, const RodState& s, int j) noexcept {
+  if (!s.alive[j]) return 0.0;
+  return m.EA * ((s.x.col(j + 1) - s.x.col(j)).norm() / s.rest_length[j] - 1.0);
+}
+
+}  // namespace filum

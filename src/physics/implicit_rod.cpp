@@ -1,0 +1,265 @@
+#include "physics/implicit_rod.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace filum {
+namespace {
+
+constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
+
+double node_span(const RodState& s, int i) noexcept {
+  double l = 0.0;
+  if (i > 0) l += 0.5 * s.rest_length[i - 1];
+  if (i + 1 < s.n) l += 0.5 * s.rest_length[i];
+  return l;
+}
+
+/// [kg m2], of edge j about its axis.
+double spin_inertia(const RodMaterial& m, const RodState& s, int j) noexcept {
+  return 0.5 * m.mass_per_length() * m.radius * m.radius * s.rest_length[j];
+}
+
+double largest_move(const Eigen::Matrix4Xd& move, int n) noexcept {
+  return std::sqrt(move.leftCols(n).topRows<3>().colwise().squaredNorm().maxCoeff());
+}
+
+}  // namespace
+
+RodBoundary::RodBoundary(int capacity)
+    : load(Eigen::Matrix4Xd::Zero(4, capacity)),
+      held(Eigen::Array<bool, 4, Eigen::Dynamic>::Constant(4, capacity, false)),
+      target(Eigen::Matrix4Xd::Zero(4, capacity)) {}
+
+ImplicitRod::ImplicitRod(const RodMaterial& m, const ContactMaterial& c, int capacity, int n_tools)
+    : material(m), contact_material(c), boundary(capacity), obstacles(8 * capacity), grasps(n_tools),
+      contact_(capacity, 16 * capacity), geometry_(capacity), matrix_(capacity), x_(Points::Zero(3, capacity)), x_trial_(x_),
+      theta_(Eigen::VectorXd::Zero(capacity)), theta_trial_(theta_), gradient_(Eigen::Matrix4Xd::Zero(4, capacity)),
+      move_(gradient_), boundary_move_(gradient_) {
+  chain_.next.resize(static_cast<std::size_t>(capacity));
+  chain_.second.resize(static_cast<std::size_t>(capacity));
+}
+
+RodMemory ImplicitRod::make_memory() const {
+  RodMemory m;
+  m.self.reserve(static_cast<std::size_t>(4 * x_.cols()));
+  m.obstacle.reserve(static_cast<std::size_t>(4 * x_.cols()));
+  m.grasps.reserve(grasps.tools.size() * kGraspPointsPerTool);
+  return m;
+}
+
+RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {
+  RodStepSummary summary;
+  begin(s, memory, o);
+  for (;; ++summary.iterations) {
+    summary.arrived = advance_boundary(s);
+    update_geometry(s, x_, theta_, geometry_);
+    contact_.update(x_, material.radius, contact_material);
+    obstacles.update(x_, material.radius, contact_material);
+    assemble_gradient(s, o);
+    summary.residual = gradient_.leftCols(s.n).topRows<3>().cwiseAbs().maxCoeff();
+    const double moment = gradient_.leftCols(s.n).row(3).cwiseAbs().maxCoeff() / material.radius;
+    if (!std::isfinite(summary.residual)) break;
+    summary.converged = summary.arrived && std::max(summary.residual, 0.1 * moment) < std::max(o.force_tolerance, o.relative_tolerance * force_scale(s));
+    if (summary.converged || summary.iterations == o.max_iterations) break;
+    if (!direction(s, o, summary)) break;
+    advance(s, memory, o);
+  }
+  summary.sound = std::isfinite(summary.residual) && x_.leftCols(s.n).allFinite();
+  if (summary.sound) {
+    finish(s, memory, o);
+  } else {
+    s.v.setZero();
+    s.theta_dot.setZero();
+  }
+  return summary;
+}
+
+void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
+  x_.leftCols(s.n) = s.x.leftCols(s.n);
+  theta_.head(s.n) = s.theta.head(s.n);
+  for (ObstacleBody& b : obstacles.bodies) b.X_now = b.X_start;
+  grasps.locate(memory.grasps, s);
+  const double fastest = std::sqrt(s.v.leftCols(s.n).colwise().squaredNorm().maxCoeff());
+  find_near(s, memory, std::max(2.0 * material.radius, std::min(1.5 * fastest * o.dt, 40.0 * material.radius)));
+}
+
+void ImplicitRod::find_near(const RodState& s, const RodMemory& memory, double reach) noexcept {
+  reach_ = reach;
+  travelled_ = 0.0;
+  const bool changed = self_contact && contact_.find_pairs(s, x_, material.radius, reach);
+  if (changed || pattern_n_ != s.n) rebuild_pattern(s.n);
+  double body_reach = 0.0;
+  for (const ObstacleBody& b : obstacles.bodies) body_reach = std::max(body_reach, (b.X_end.p - b.X_start.p).norm());
+  obstacles.find_touches(s, x_, material.radius, reach + 1.5 * body_reach);
+  contact_.recall(memory.self);
+  obstacles.recall(memory.obstacle);
+}
+
+void ImplicitRod::rebuild_pattern(int n) noexcept {
+  pattern_n_ = n;
+  matrix_.begin_pattern(n);
+  for (int i = 0; i + 1 < n; ++i) matrix_.connect(i, i + 1);
+  for (int i = 0; i + 2 < n; ++i) matrix_.connect(i, i + 2);
+  contact_.connect(matrix_);
+  matrix_.analyse();
+  for (int i = 0; i + 1 < n; ++i) chain_.next[i] = matrix_.find(i, i + 1);
+  for (int i = 0; i + 2 < n; ++i) chain_.second[i] = matrix_.find(i, i + 2);
+  contact_.find_slots(matrix_);
+}
+
+/// Moves bodies and held coordinates on towards their targets, as far as nothing is crossed. True when all have arrived.
+bool ImplicitRod::advance_boundary(const RodState& s) noexcept {
+  bool arrived = obstacles.advance_bodies(x_, material.radius);
+  boundary_move_.leftCols(s.n).setZero();
+  bool any = false;
+  for (int i = 0; i < s.n; ++i) {
+    for (int c = 0; c < 4; ++c) {
+      if (!boundary.held(c, i)) continue;
+      const double here = c < 3 ? x_(c, i) : theta_[i];
+      boundary_move_(c, i) = boundary.target(c, i) - here;
+      any = any || boundary_move_(c, i) != 0.0;
+    }
+  }
+  if (!any) return arrived;
+  double fraction = 1.0;
+  if (self_contact) fraction = contact_.free_fraction(x_, boundary_move_, material.radius);
+  fraction = std::min(fraction, obstacles.free_fraction(x_, boundary_move_, material.radius));
+  x_.leftCols(s.n) += fraction * boundary_move_.leftCols(s.n).topRows<3>();
+  theta_.head(s.n) += fraction * boundary_move_.leftCols(s.n).row(3).transpose();
+  if (fraction == 1.0) {  // exactly on target, so that rounding cannot keep the step from arriving
+    for (int i = 0; i < s.n; ++i) {
+      for (int c = 0; c < 3; ++c)
+        if (boundary.held(c, i)) x_(c, i) = boundary.target(c, i);
+      if (boundary.held(3, i)) theta_[i] = boundary.target(3, i);
+    }
+  }
+  return arrived && fraction == 1.0;
+}
+
+void ImplicitRod::assemble_gradient(const RodState& s, const RodStepOptions& o) noexcept {
+  gradient_.leftCols(s.n) = -boundary.load.leftCols(s.n);
+  const double rho = material.mass_per_length();
+  const double dt = o.dt;
+  for (int i = 0; i < s.n; ++i) {
+    const double span = node_span(s, i);
+    const Vec3 travelled = x_.col(i) - s.x.col(i);
+    const Vec3 predicted = dt * s.v.col(i) + dt * dt * o.gravity;
+    gradient_.col(i).head<3>() += rho * span / (dt * dt) * (travelled - predicted) + material.drag * span / dt * travelled;
+    if (i + 1 < s.n) gradient_(3, i) += spin_inertia(material, s, i) / (dt * dt) * (theta_[i] - s.theta[i] - dt * s.theta_dot[i]);
+  }
+  add_elastic_gradient(material, s, geometry_, gradient_);
+  if (self_contact) contact_.add_gradient(x_, s.x, contact_material, gradient_);
+  obstacles.add_gradient(x_, s.x, material.radius, contact_material, gradient_);
+  grasps.add_gradient(x_, gradient_);
+  for (int i = 0; i < s.n; ++i)
+    for (int c = 0; c < 4; ++c)
+      if (boundary.held(c, i)) gradient_(c, i) = 0.0;
+}
+
+void ImplicitRod::assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept {
+  matrix_.set_zero();
+  const double dt = o.dt;
+  for (int i = 0; i < s.n; ++i) {
+    Mat4 block = Mat4::Zero();
+    const double inertia = material.mass_per_length() / (dt * dt) + material.drag / dt;
+    block.diagonal().head<3>().setConstant(inertia * node_span(s, i));
+    block(3, 3) = i + 1 < s.n ? spin_inertia(material, s, i) / (dt * dt) : 1.0;  // no edge lies behind the last node
+    for (int c = 0; c < 4; ++c)
+      if (boundary.held(c, i)) block(c, c) += kHeld;
+    matrix_.add_diagonal(i, block);
+  }
+  add_elastic_hessian(material, s, geometry_, kind, chain_, matrix_);
+  if (self_contact) contact_.add_stiffness(material.radius, contact_material, chain_, matrix_);
+  obstacles.add_stiffness(contact_material, chain_, matrix_);
+  grasps.add_stiffness(chain_, matrix_);
+}
+
+/// The largest tension or contact force [N]: what an unbalanced force is small against.
+double ImplicitRod::force_scale(const RodState& s) const noexcept {
+  double scale = 0.0;
+  for (int j = 0; j + 1 < s.n; ++j)
+    if (s.alive[j]) scale = std::max(scale, std::abs(material.EA * (geometry_.length[j] / s.rest_length[j] - 1.0)));
+  if (self_contact)
+    for (const RodPair& p : contact_.pairs()) scale = std::max(scale, p.force);
+  return scale;
+}
+
+bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, RodStepSummary& summary) noexcept {
+  assemble_stiffness(s, o, Stiffness::exact);
+  if (!matrix_.factor()) {
+    ++summary.fallbacks;
+    assemble_stiffness(s, o, Stiffness::gauss_newton);
+    if (!matrix_.factor()) return false;
+  }
+  move_.leftCols(s.n) = -gradient_.leftCols(s.n);
+  matrix_.solve(move_.leftCols(s.n));
+  return true;
+}
+
+void ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
+  const int n = s.n;
+  const double slope = (gradient_.leftCols(n).array() * move_.leftCols(n).array()).sum();
+  double length = largest_move(move_, n);
+  if (travelled_ + length > reach_) {
+    find_near(s, memory, std::max(length, 2.0 * material.radius));
+    contact_.update(x_, material.radius, contact_material);
+    obstacles.update(x_, material.radius, contact_material);
+  }
+  double fraction = 1.0;
+  if (self_contact) fraction = contact_.free_fraction(x_, move_, material.radius);
+  fraction = std::min(fraction, obstacles.free_fraction(x_, move_, material.radius));
+  const double before = energy(s, x_, theta_, o);
+  for (int k = 0;; ++k) {
+    x_trial_.leftCols(n) = x_.leftCols(n) + fraction * move_.leftCols(n).topRows<3>();
+    theta_trial_.head(n) = theta_.head(n) + fraction * move_.leftCols(n).row(3).transpose();
+    if (k == 6 || energy(s, x_trial_, theta_trial_, o) <= before + 1e-4 * fraction * slope) break;
+    fraction *= 0.5;
+  }
+  travelled_ += fraction * length;
+  std::swap(x_, x_trial_);
+  std::swap(theta_, theta_trial_);
+}
+
+double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept {
+  update_geometry(s, x, theta, geometry_);
+  double u = elastic_energy(material, s, geometry_);
+  const double rho = material.mass_per_length(), dt = o.dt;
+  for (int i = 0; i < s.n; ++i) {
+    const double span = node_span(s, i);
+    const Vec3 predicted = s.x.col(i) + dt * s.v.col(i) + dt * dt * o.gravity;
+    u += 0.5 * rho * span / (dt * dt) * (x.col(i) - predicted).squaredNorm();
+    u += 0.5 * material.drag * span / dt * (x.col(i) - s.x.col(i)).squaredNorm();
+    if (i + 1 < s.n) u += 0.5 * spin_inertia(material, s, i) * std::pow((theta[i] - s.theta[i]) / dt - s.theta_dot[i], 2);
+    u -= boundary.load.col(i).head<3>().dot(x.col(i)) + boundary.load(3, i) * theta[i];
+  }
+  if (self_contact) u += contact_.energy(x, s.x, material.radius, contact_material);
+  return u + obstacles.energy(x, s.x, material.radius, contact_material) + grasps.energy(x);
+}
+
+void ImplicitRod::finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {
+  s.v.leftCols(s.n) = (x_.leftCols(s.n) - s.x.leftCols(s.n)) / o.dt;
+  s.theta_dot.head(s.n) = (theta_.head(s.n) - s.theta.head(s.n)) / o.dt;
+  accept_geometry(geometry_, x_, theta_, s);
+  contact_.remember(memory.self);
+  obstacles.remember(memory.obstacle);
+  grasps.update_points(memory.grasps);
+}
+
+RodStepSummary ImplicitRod::midpoint_step(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {
+  RodStepOptions half = o;
+  half.dt = 0.5 * o.dt;
+  const Points x_before = s.x, v_before = s.v;
+  const Eigen::VectorXd theta_before = s.theta, rate_before = s.theta_dot;
+  const RodStepSummary summary = step(s, memory, half);
+  if (!summary.sound) return summary;
+  x_.leftCols(s.n) = 2.0 * s.x.leftCols(s.n) - x_before.leftCols(s.n);
+  theta_.head(s.n) = 2.0 * s.theta.head(s.n) - theta_before.head(s.n);
+  update_geometry(s, x_, theta_, geometry_);
+  accept_geometry(geometry_, x_, theta_, s);
+  s.v.leftCols(s.n) = 2.0 * s.v.leftCols(s.n) - v_before.leftCols(s.n);
+  s.theta_dot.head(s.n) = 2.0 * s.theta_dot.head(s.n) - rate_before.head(s.n);
+  return summary;
+}
+
+}  // namespace filum

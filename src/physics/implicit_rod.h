@@ -1,0 +1,99 @@
+#pragma once
+// One implicit time step of the thread with everything that touches it: backward Euler solved by Newton's method.
+//
+// The step is the minimiser of   1/2 |q - q^|^2_M / dt^2 + U_elastic + U_gravity + U_drag + U_contact + U_grasp,
+// q^ = q_n + dt v_n (Martin et al., ACM TOG 30(4):72, 2011, eq. 4), with the normal forces of friction taken from
+// the last Newton iterate. Each iterate is reached by a line search on that sum, and by no more than
+// the fraction of the move that provably crosses nothing, so every accepted shape has the topology of the one before.
+// Linear systems: base/block_cholesky.h. Cost is linear in nodes and contacts. Nothing allocates after the constructor.
+// Tests: implicit_rod_test; `filum validate`.
+
+#include <vector>
+
+#include "physics/elastic_rod.h"
+#include "physics/rod_contact.h"
+#include "physics/rod_obstacle.h"
+#include "physics/thread_grasp.h"
+
+namespace filum {
+
+struct RodStepOptions {
+  double dt = 1e-3;                   // [s]
+  Vec3 gravity = Vec3(0, 0, -9.81);   // [m/s2]
+  int max_iterations = 12;            // Newton iterations
+  double force_tolerance = 1e-10;     // [N], unbalanced nodal force that is always good enough
+  double relative_tolerance = 1e-3;   // [-], of the largest tension or contact force in the thread
+};
+
+struct RodStepSummary {
+  int iterations = 0;
+  double residual = 0.0;              // [N], largest unbalanced nodal force
+  bool converged = false;
+  bool arrived = true;                // bodies and prescribed nodes reached the end of their path
+  bool sound = true;                  // false: a number was not finite; the state is the one before the step
+  int fallbacks = 0;                  // iterations that needed the Gauss-Newton stiffness
+};
+
+/// Nodes held or loaded from outside (validation problems and clamped ends); sizes 4 x capacity, rows x, y, z, theta.
+struct RodBoundary {
+  explicit RodBoundary(int capacity);
+  Eigen::Matrix4Xd load;                                   // [N] and, for the twist of edge j, [N m]
+  Eigen::Array<bool, 4, Eigen::Dynamic> held;              // true: follows `target`
+  Eigen::Matrix4Xd target;                                 // [m], [rad], value at the end of the step where held
+};
+
+/// What the contact of a thread remembers from step to step. Part of the state.
+struct RodMemory {
+  std::vector<ContactBristle> self, obstacle;
+  std::vector<GraspPoint> grasps;
+};
+
+class ImplicitRod {
+ public:
+  ImplicitRod(const RodMaterial& material, const ContactMaterial& contact, int node_capacity, int n_tools = 0);
+
+  RodMaterial material;
+  ContactMaterial contact_material;
+  RodBoundary boundary;
+  RodObstacles obstacles;
+  ThreadGrasps grasps;
+  bool self_contact = true;
+
+  /// Room for the bristles of one state.
+  RodMemory make_memory() const;
+
+  /// Advances state and memory by options.dt. Bodies and tools move from their X_start to X_end.
+  RodStepSummary step(RodState& s, RodMemory& memory, const RodStepOptions& options) noexcept;
+
+  /// The implicit midpoint rule (half a backward Euler step, then reflection): conserves momentum and nearly energy. Free of
+  /// contact only: the reflection is not checked for crossings.
+  RodStepSummary midpoint_step(RodState& s, RodMemory& memory, const RodStepOptions& options) noexcept;
+
+  const RodContact& contact() const noexcept { return contact_; }
+
+ private:
+  void begin(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
+  void find_near(const RodState& s, const RodMemory& memory, double reach) noexcept;
+  void rebuild_pattern(int n) noexcept;
+  bool advance_boundary(const RodState& s) noexcept;
+  void assemble_gradient(const RodState& s, const RodStepOptions& o) noexcept;
+  void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
+  double force_scale(const RodState& s) const noexcept;
+  bool direction(const RodState& s, const RodStepOptions& o, RodStepSummary& summary) noexcept;
+  void advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
+  double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept;
+  void finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept;
+
+  RodContact contact_;
+  RodGeometry geometry_;
+  BlockCholesky matrix_;
+  ChainSlots chain_;
+  int pattern_n_ = 0;
+  Points x_, x_trial_;
+  Eigen::VectorXd theta_, theta_trial_;
+  Eigen::Matrix4Xd gradient_, move_, boundary_move_;
+  double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
+  double travelled_ = 0.0;
+};
+
+}  // namespace filum

@@ -1,0 +1,226 @@
+#include "physics/rod_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "collision/segment_distance.h"
+
+namespace filum {
+namespace {
+
+constexpr int kChunk = 8;  // edges in one box of the broad phase
+
+struct Weights {
+  int node[4];
+  double w[4];
+};
+
+Weights weights(const RodPair& p) noexcept {
+  return {{p.i, p.i + 1, p.j, p.j + 1}, {1.0 - p.s, p.s, -(1.0 - p.t), -p.t}};
+}
+
+SegmentPair measure(const Points& x, int i, int j) noexcept {
+  return closest_points(x.col(i), x.col(i + 1), x.col(j), x.col(j + 1));
+}
+
+/// Bristle of the step so far: start value plus relative displacement, in the tangent plane.
+Vec3 trial_bristle(const RodPair& p, const Points& x, const Points& x_start) noexcept {
+  const Weights w = weights(p);
+  Vec3 xi = p.xi_start;
+  for (int k = 0; k < 4; ++k) xi += w.w[k] * (x.col(w.node[k]) - x_start.col(w.node[k]));
+  return xi - xi.dot(p.normal) * p.normal;
+}
+
+}  // namespace
+
+PairPotential pair_potential(double distance, double radius, double stiffness) noexcept {
+  PairPotential r{0, 0, 0};
+  const double overlap = 2.0 * radius - distance;
+  if (overlap <= 0.0) return r;
+  r = {0.5 * stiffness * overlap * overlap, -stiffness * overlap, stiffness};
+  if (distance < radius) {
+    const double q = distance / radius, c = distance - radius, log = std::log(q);
+    r.energy -= stiffness * c * c * log;
+    r.slope -= stiffness * (2.0 * c * log + c * c / distance);
+    r.curvature -= stiffness * (2.0 * log + 4.0 * c / distance - c * c / (distance * distance));
+  }
+  return r;
+}
+
+double conservative_advance(const Vec3 ends[4], const Vec3 moves[4], double keep) noexcept {
+  double speed = 0.0;  // no two points of the segments approach faster than their fastest pair of ends
+  for (int a = 0; a < 2; ++a)
+    for (int b = 2; b < 4; ++b) speed = std::max(speed, (moves[a] - moves[b]).norm());
+  if (speed == 0.0) return 1.0;
+  double fraction = 0.0;
+  for (int k = 0; k < 32; ++k) {
+    Vec3 p[4];
+    for (int e = 0; e < 4; ++e) p[e] = ends[e] + fraction * moves[e];
+    const double room = closest_points(p[0], p[1], p[2], p[3]).distance - keep;
+    if (room < 0.02 * keep) break;
+    fraction += 0.98 * room / speed;
+    if (fraction >= 1.0) return 1.0;
+  }
+  return fraction;
+}
+
+RodContact::RodContact(int node_capacity, int pair_capacity)
+    : low_(3, node_capacity / kChunk + 1), high_(3, node_capacity / kChunk + 1) {
+  pairs_.reserve(static_cast<std::size_t>(pair_capacity));
+  previous_.reserve(static_cast<std::size_t>(pair_capacity));
+  arc_.reserve(static_cast<std::size_t>(node_capacity));
+}
+
+bool RodContact::find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept {
+  std::swap(pairs_, previous_);
+  pairs_.clear();
+  overflowed_ = false;
+  const int edges = s.n - 1;
+  arc_.assign(1, 0.0);
+  for (int j = 0; j < edges; ++j) arc_.push_back(arc_.back() + s.rest_length[j]);
+  const int chunks = (edges + kChunk - 1) / kChunk;
+  for (int c = 0; c < chunks; ++c) {
+    const int begin = c * kChunk, count = std::min(kChunk, edges - begin) + 1;
+    low_.col(c) = x.middleCols(begin, count).rowwise().minCoeff();
+    high_.col(c) = x.middleCols(begin, count).rowwise().maxCoeff();
+  }
+  const double near = 2.0 * radius + 2.0 * reach;
+  auto apart = [&](const auto& low_a, const auto& high_a, const auto& low_b, const auto& high_b) {
+    return ((low_a - high_b).array() > near).any() || ((low_b - high_a).array() > near).any();
+  };
+  for (int a = 0; a < chunks; ++a) {
+    for (int b = a; b < chunks; ++b) {
+      if (apart(low_.col(a), high_.col(a), low_.col(b), high_.col(b))) continue;
+      for (int i = a * kChunk; i < std::min(edges, (a + 1) * kChunk); ++i) {
+        const Vec3 low = x.col(i).cwiseMin(x.col(i + 1)), high = x.col(i).cwiseMax(x.col(i + 1));
+        for (int j = std::max(i + 2, b * kChunk); j < std::min(edges, (b + 1) * kChunk); ++j) {
+          if (arc_[j] - arc_[i + 1] < 4.0 * radius) continue;
+          if (apart(low, high, x.col(j).cwiseMin(x.col(j + 1)), x.col(j).cwiseMax(x.col(j + 1)))) continue;
+          if (measure(x, i, j).distance > near) continue;
+          if (pairs_.size() == pairs_.capacity()) {
+            overflowed_ = true;
+            continue;
+          }
+          RodPair& p = pairs_.emplace_back();
+          p.i = i;
+          p.j = j;
+        }
+      }
+    }
+  }
+  std::sort(pairs_.begin(), pairs_.end(), [](const RodPair& p, const RodPair& q) { return std::tie(p.i, p.j) < std::tie(q.i, q.j); });
+  const bool same = std::equal(pairs_.begin(), pairs_.end(), previous_.begin(), previous_.end(),
+                               [](const RodPair& p, const RodPair& q) { return p.i == q.i && p.j == q.j; });
+  if (same) std::swap(pairs_, previous_);  // keeps slots and bristles
+  return !same;
+}
+
+void RodContact::connect(BlockCholesky& matrix) const noexcept {
+  for (const RodPair& p : pairs_) {
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b) matrix.connect(p.i + a, p.j + b);
+  }
+}
+
+void RodContact::find_slots(const BlockCholesky& matrix) noexcept {
+  for (RodPair& p : pairs_)
+    for (int k = 0; k < 4; ++k) p.slots[k] = matrix.find(p.i + k / 2, p.j + k % 2);
+}
+
+void RodContact::recall(const std::vector<ContactBristle>& memory) noexcept {
+  auto b = memory.begin();  // both are sorted by (i, j)
+  for (RodPair& p : pairs_) {
+    while (b != memory.end() && std::tie(b->i, b->j) < std::tie(p.i, p.j)) ++b;
+    p.xi_start = b != memory.end() && b->i == p.i && b->j == p.j ? b->xi : Vec3(Vec3::Zero());
+  }
+}
+
+void RodContact::remember(std::vector<ContactBristle>& memory) const noexcept {
+  memory.clear();
+  for (const RodPair& p : pairs_) {
+    if (p.force <= 0.0 || memory.size() == memory.capacity()) continue;
+    memory.push_back({p.i, p.j, p.friction.xi});
+  }
+}
+
+void RodContact::update(const Points& x, double radius, const ContactMaterial& m) noexcept {
+  for (RodPair& p : pairs_) {
+    const SegmentPair c = measure(x, p.i, p.j);
+    p.s = c.s;
+    p.t = c.t;
+    p.distance = c.distance;
+    p.normal = c.d / c.distance;
+    p.force = -pair_potential(c.distance, radius, m.stiffness).slope;
+  }
+}
+
+double RodContact::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept {
+  double u = 0.0;
+  const double k_t = m.tangential_ratio * m.stiffness;
+  for (const RodPair& p : pairs_) {
+    u += pair_potential(measure(x, p.i, p.j).distance, radius, m.stiffness).energy;
+    if (p.force > 0.0) u += coulomb(trial_bristle(p, x, x_start), p.normal, p.force, m.friction, k_t).energy;
+  }
+  return u;
+}
+
+void RodContact::add_gradient(const Points& x, const Points& x_start, const ContactMaterial& m,
+                              Eigen::Matrix4Xd& gradient) noexcept {
+  const double k_t = m.tangential_ratio * m.stiffness;
+  for (RodPair& p : pairs_) {
+    if (p.force <= 0.0) continue;
+    p.friction = coulomb(trial_bristle(p, x, x_start), p.normal, p.force, m.friction, k_t);
+    const Vec3 force = p.force * p.normal + p.friction.force;  // on the first edge
+    const Weights w = weights(p);
+    for (int a = 0; a < 4; ++a) gradient.col(w.node[a]).head<3>() -= w.w[a] * force;
+  }
+}
+
+void RodContact::add_stiffness(double radius, const ContactMaterial& m, const ChainSlots& chain,
+                               BlockCholesky& matrix) const noexcept {
+  for (const RodPair& p : pairs_) {
+    if (p.force <= 0.0) continue;
+    const double curvature = pair_potential(p.distance, radius, m.stiffness).curvature;
+    const Mat3 k = curvature * p.normal * p.normal.transpose() + p.friction.stiffness;
+    const Weights w = weights(p);
+    for (int a = 0; a < 4; ++a) matrix.add_diagonal(w.node[a], pad(w.w[a] * w.w[a] * k));
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < 2; ++b) matrix.add(p.slots[2 * a + b], pad(w.w[a] * w.w[2 + b] * k));
+    matrix.add(chain.next[p.i], pad(w.w[0] * w.w[1] * k));
+    matrix.add(chain.next[p.j], pad(w.w[2] * w.w[3] * k));
+  }
+}
+
+double RodContact::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept {
+  double fraction = 1.0;
+  for (const RodPair& p : pairs_) {
+    const int node[4] = {p.i, p.i + 1, p.j, p.j + 1};
+    Vec3 ends[4], moves[4];
+    double fastest = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      ends[k] = x.col(node[k]);
+      moves[k] = fraction * move.col(node[k]).head<3>();
+    }
+    for (int a = 0; a < 2; ++a)
+      for (int b = 2; b < 4; ++b) fastest = std::max(fastest, (moves[a] - moves[b]).squaredNorm());
+    const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
+    const double keep = std::min(1.2 * radius, 0.6 * distance);
+    if (fastest <= (distance - keep) * (distance - keep)) continue;
+    fraction *= conservative_advance(ends, moves, keep);
+  }
+  return fraction;
+}
+
+double RodContact::smallest_distance() const noexcept {
+  double d = std::numeric_limits<double>::infinity();
+  for (const RodPair& p : pairs_) d = std::min(d, p.distance);
+  return d;
+}
+
+int RodContact::n_touching(double radius) const noexcept {
+  return static_cast<int>(std::count_if(pairs_.begin(), pairs_.end(), [&](const RodPair& p) { return p.distance < 2.0 * radius; }));
+}
+
+}  // namespace filum

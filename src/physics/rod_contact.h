@@ -1,0 +1,98 @@
+#pragma once
+// Contact of the thread with itself: stiff repulsion of edges closer than one diameter, Coulomb friction, and a bound on each
+// move so that no strand ever passes through another.
+//
+// Normal force: with D the distance of two edges' axes and o = 2h - D the overlap,
+//   phi(D) = k o^2/2  (o > 0)   plus below D = h the logarithmic barrier  -k (D - h)^2 ln(D/h)
+// (Li et al., "Incremental Potential Contact", ACM TOG 39(4):49, 2020, eq. 6). k stands for the transverse squeeze of a
+// round polymer thread (Hertz, crossed cylinders: 0.1 N flattens a 25 um nylon by about 6 um, k about 2e4 N/m).
+// Friction: friction.h, with the relative displacement of the axes' closest material points.
+// No passage: a move of all nodes is allowed only up to the fraction that conservative advancement (Mirtich 1996) proves
+// free of crossing: relative displacement of two edges, largest over their end points, bounds how far D can fall.
+// Neglects: rolling of the strands about their own axes under friction; anisotropy. Tests: rod_contact_test.
+
+#include <cstdint>
+#include <vector>
+
+#include "base/block_cholesky.h"
+#include "base/pose.h"
+#include "physics/elastic_rod.h"
+#include "physics/friction.h"
+
+namespace filum {
+
+struct ContactMaterial {
+  double stiffness = 1e4;             // [N/m], normal, each pair of edges
+  double tangential_ratio = 0.7;      // [-], k_t / k (Mindlin: 2(1-nu)/(2-nu), about 0.75 at nu 0.4)
+  double friction = 0.2;              // [-]
+};
+
+/// Memory of one touching pair between steps: what friction needs to stick. Part of the state.
+struct ContactBristle {
+  std::int32_t i = -1, j = -1;        // edges, i < j (or edge and obstacle)
+  Vec3 xi = Vec3::Zero();             // [m]
+};
+
+/// One near pair of edges in the present configuration.
+struct RodPair {
+  int i = 0, j = 0;                   // edges, i < j
+  double s = 0, t = 0;                // closest points
+  Vec3 normal = Vec3::UnitX();        // unit, from edge j to edge i
+  double distance = 1;                // [m], of the axes
+  double force = 0;                   // [N], normal
+  Vec3 xi_start = Vec3::Zero();       // [m], bristle at the start of the step
+  FrictionPoint friction;
+  BlockCholesky::Slot slots[4];       // blocks (i,j), (i,j+1), (i+1,j), (i+1,j+1)
+};
+
+class RodContact {
+ public:
+  RodContact(int node_capacity, int pair_capacity);
+
+  /// Collects all pairs of edges that can come within one diameter while every node moves at most `reach` [m]. Edges of the
+  /// same strand closer than two diameters along it are left out. True if the set of pairs changed.
+  bool find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept;
+  const std::vector<RodPair>& pairs() const noexcept { return pairs_; }
+  bool overflowed() const noexcept { return overflowed_; }
+
+  /// Declares the blocks of all pairs in the pattern; after analysis, looks the slots up.
+  void connect(BlockCholesky& matrix) const noexcept;
+  void find_slots(const BlockCholesky& matrix) noexcept;
+
+  /// Attaches the bristles remembered from the last step to the present pairs.
+  void recall(const std::vector<ContactBristle>& memory) noexcept;
+  /// Writes the bristles of touching pairs for the next step (capacity reserved by the caller).
+  void remember(std::vector<ContactBristle>& memory) const noexcept;
+
+  /// Distances, normals and normal forces at x; the normal force then stays fixed in energy() until the next call.
+  void update(const Points& x, double radius, const ContactMaterial& m) noexcept;
+  /// Potential [J] at x (friction with the normal forces of the last update).
+  double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept;
+  /// Adds the gradient, then the stiffness, at the configuration of the last update.
+  void add_gradient(const Points& x, const Points& x_start, const ContactMaterial& m, Eigen::Matrix4Xd& gradient) noexcept;
+  void add_stiffness(double radius, const ContactMaterial& m, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
+
+  /// Largest fraction of `move` (4 x n, only the first three rows count) that provably crosses nothing.
+  double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;
+
+  double smallest_distance() const noexcept;  // [m], of the axes, among the pairs; infinity if there is none
+  int n_touching(double radius) const noexcept;
+
+ private:
+  std::vector<RodPair> pairs_, previous_;
+  Points low_, high_;   // boxes of chunks of edges
+  std::vector<double> arc_;
+  bool overflowed_ = false;
+};
+
+/// phi(D), its first and second derivative.
+struct PairPotential {
+  double energy, slope, curvature;  // [J], [N], [N/m]
+};
+PairPotential pair_potential(double distance, double radius, double stiffness) noexcept;
+
+/// Fraction of a move for two segments (ends a0, a1, b0, b1 with displacements da0 ...) that keeps them apart, by
+/// conservative advancement. `keep` [m]: distance of the axes at which the advance stops (0 < keep < present distance).
+double conservative_advance(const Vec3 ends[4], const Vec3 moves[4], double keep) noexcept;
+
+}  // namespace filum

@@ -1,0 +1,194 @@
+#include "physics/rod_obstacle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "collision/segment_distance.h"
+
+namespace filum {
+namespace {
+
+double bar_radius(const Obstacle& o, double t) noexcept { return (1.0 - t) * o.r_a + t * o.r_b; }
+
+Pose between(const Pose& from, const Pose& to, double f) noexcept {
+  return {(1.0 - f) * from.p + f * to.p, from.q.slerp(f, to.q)};
+}
+
+/// Contact spring of a wall: like the strands' own but without the barrier, since a bar is thick.
+double wall_energy(double gap, double k) noexcept { return gap < 0.0 ? 0.5 * k * gap * gap : 0.0; }
+
+}  // namespace
+
+RodObstacles::RodObstacles(int touch_capacity) { touches_.reserve(static_cast<std::size_t>(touch_capacity)); }
+
+void RodObstacles::collect(int edge, int obstacle, double s) noexcept {
+  if (touches_.size() == touches_.capacity()) return;
+  ObstacleTouch& t = touches_.emplace_back();
+  t.edge = edge;
+  t.obstacle = obstacle;
+  t.s = s;
+}
+
+void RodObstacles::find_touches(const RodState& s, const Points& x, double radius, double reach) noexcept {
+  touches_.clear();
+  a_W_.resize(obstacles.size());
+  b_W_.resize(obstacles.size());
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const Pose& X = bodies[static_cast<std::size_t>(obstacles[k].body)].X_now;
+    a_W_[k] = X * obstacles[k].a_B;
+    b_W_[k] = X * obstacles[k].b_B;
+  }
+  for (int j = 0; j + 1 < s.n; ++j) {
+    const Vec3 low = x.col(j).cwiseMin(x.col(j + 1)), high = x.col(j).cwiseMax(x.col(j + 1));
+    for (int k = 0; k < static_cast<int>(obstacles.size()); ++k) {
+      const Obstacle& o = obstacles[k];
+      if (!o.enabled) continue;
+      if (o.kind == Obstacle::Kind::plane) {
+        const Vec3 n = (b_W_[k] - a_W_[k]).normalized();
+        if (n.dot(x.col(j) - a_W_[k]) < radius + reach) collect(j, k, 0.0);
+        if (j + 2 == s.n && n.dot(x.col(j + 1) - a_W_[k]) < radius + reach) collect(j, k, 1.0);
+        continue;
+      }
+      const double near = radius + std::max(o.r_a, o.r_b) + reach;
+      if (((low - a_W_[k].cwiseMax(b_W_[k])).array() > near).any()) continue;
+      if (((a_W_[k].cwiseMin(b_W_[k]) - high).array() > near).any()) continue;
+      const SegmentPair c = closest_points(x.col(j), x.col(j + 1), a_W_[k], b_W_[k]);
+      if (c.distance < radius + bar_radius(o, c.t) + reach) collect(j, k, c.s);
+    }
+  }
+}
+
+void RodObstacles::recall(const std::vector<ContactBristle>& memory) noexcept {
+  auto b = memory.begin();
+  for (ObstacleTouch& t : touches_) {
+    while (b != memory.end() && std::tie(b->i, b->j) < std::tie(t.edge, t.obstacle)) ++b;
+    t.xi_start.setZero();
+    if (b == memory.end() || b->i != t.edge || b->j != t.obstacle) continue;
+    const ObstacleBody& body = bodies[static_cast<std::size_t>(obstacles[static_cast<std::size_t>(t.obstacle)].body)];
+    t.xi_start = body.X_end.q * (body.X_start.q.conjugate() * b->xi);
+  }
+}
+
+void RodObstacles::remember(std::vector<ContactBristle>& memory) const noexcept {
+  memory.clear();
+  for (const ObstacleTouch& t : touches_) {
+    if (t.force <= 0.0 || memory.size() == memory.capacity()) continue;
+    memory.push_back({t.edge, t.obstacle, t.friction.xi});
+  }
+}
+
+bool RodObstacles::advance_bodies(const Points& x, double radius) noexcept {
+  bool there = true;
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    ObstacleBody& body = bodies[static_cast<std::size_t>(b)];
+    double fraction = 1.0;
+    for (const ObstacleTouch& t : touches_) {
+      const Obstacle& o = obstacles[static_cast<std::size_t>(t.obstacle)];
+      if (o.body != b || o.kind == Obstacle::Kind::plane) continue;
+      const Vec3 ends[4] = {x.col(t.edge), x.col(t.edge + 1), body.X_now * o.a_B, body.X_now * o.b_B};
+      const Vec3 moves[4] = {Vec3::Zero(), Vec3::Zero(), body.X_end * o.a_B - ends[2], body.X_end * o.b_B - ends[3]};
+      const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
+      const double keep = std::min(0.5 * (radius + bar_radius(o, t.t)), 0.8 * distance);
+      fraction = std::min(fraction, conservative_advance(ends, moves, keep));
+    }
+    body.X_now = fraction >= 1.0 ? body.X_end : between(body.X_now, body.X_end, fraction);
+    there = there && fraction >= 1.0;
+  }
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const Pose& X = bodies[static_cast<std::size_t>(obstacles[k].body)].X_now;
+    a_W_[k] = X * obstacles[k].a_B;
+    b_W_[k] = X * obstacles[k].b_B;
+  }
+  return there;
+}
+
+void RodObstacles::measure(const Points& x, double radius, ObstacleTouch& touch) const noexcept {
+  const auto k = static_cast<std::size_t>(touch.obstacle);
+  const Obstacle& o = obstacles[k];
+  if (o.kind == Obstacle::Kind::plane) {
+    touch.normal = (b_W_[k] - a_W_[k]).normalized();
+    touch.gap = touch.normal.dot(x.col(touch.edge + (touch.s > 0.5)) - a_W_[k]) - radius;
+    return;
+  }
+  const SegmentPair c = closest_points(x.col(touch.edge), x.col(touch.edge + 1), a_W_[k], b_W_[k]);
+  touch.s = c.s;
+  touch.t = c.t;
+  touch.normal = c.d / std::max(c.distance, 1e-12);
+  touch.gap = c.distance - radius - bar_radius(o, c.t);
+}
+
+Vec3 RodObstacles::trial_bristle(const ObstacleTouch& t, const Points& x, const Points& x_start) const noexcept {
+  const Vec3 now = (1.0 - t.s) * x.col(t.edge) + t.s * x.col(t.edge + 1);
+  const Vec3 before = (1.0 - t.s) * x_start.col(t.edge) + t.s * x_start.col(t.edge + 1);
+  const ObstacleBody& body = bodies[static_cast<std::size_t>(obstacles[static_cast<std::size_t>(t.obstacle)].body)];
+  const Vec3 carried = body.X_now * (body.X_start.inverse() * before);  // where the body has taken that point
+  const Vec3 xi = t.xi_start + now - carried;
+  return xi - xi.dot(t.normal) * t.normal;
+}
+
+void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m) noexcept {
+  for (ObstacleTouch& t : touches_) {
+    measure(x, radius, t);
+    t.force = t.gap < 0.0 ? -m.stiffness * t.gap : 0.0;
+  }
+}
+
+double RodObstacles::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept {
+  double u = 0.0;
+  const double k_t = m.tangential_ratio * m.stiffness;
+  for (const ObstacleTouch& t : touches_) {
+    ObstacleTouch trial = t;
+    measure(x, radius, trial);
+    u += wall_energy(trial.gap, m.stiffness);
+    const double mu = obstacles[static_cast<std::size_t>(t.obstacle)].friction;
+    if (t.force > 0.0) u += coulomb(trial_bristle(t, x, x_start), t.normal, t.force, mu, k_t).energy;
+  }
+  return u;
+}
+
+void RodObstacles::add_gradient(const Points& x, const Points& x_start, double radius, const ContactMaterial& m,
+                                Eigen::Matrix4Xd& gradient) noexcept {
+  for (ObstacleBody& b : bodies) b.force = b.torque = Vec3::Zero();
+  const double k_t = m.tangential_ratio * m.stiffness;
+  for (ObstacleTouch& t : touches_) {
+    if (t.force <= 0.0) continue;
+    const Obstacle& o = obstacles[static_cast<std::size_t>(t.obstacle)];
+    t.friction = coulomb(trial_bristle(t, x, x_start), t.normal, t.force, o.friction, k_t);
+    const Vec3 on_thread = t.force * t.normal + t.friction.force;
+    gradient.col(t.edge).head<3>() -= (1.0 - t.s) * on_thread;
+    gradient.col(t.edge + 1).head<3>() -= t.s * on_thread;
+    ObstacleBody& body = bodies[static_cast<std::size_t>(o.body)];
+    const Vec3 point = (1.0 - t.s) * x.col(t.edge) + t.s * x.col(t.edge + 1) - radius * t.normal;
+    body.force -= on_thread;
+    body.torque -= (point - body.X_now.p).cross(on_thread);
+  }
+}
+
+void RodObstacles::add_stiffness(const ContactMaterial& m, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
+  for (const ObstacleTouch& t : touches_) {
+    if (t.force <= 0.0) continue;
+    const Mat3 k = m.stiffness * t.normal * t.normal.transpose() + t.friction.stiffness;
+    matrix.add_diagonal(t.edge, pad((1.0 - t.s) * (1.0 - t.s) * k));
+    matrix.add_diagonal(t.edge + 1, pad(t.s * t.s * k));
+    matrix.add(chain.next[t.edge], pad(t.s * (1.0 - t.s) * k));
+  }
+}
+
+double RodObstacles::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept {
+  double fraction = 1.0;
+  for (const ObstacleTouch& t : touches_) {
+    const auto k = static_cast<std::size_t>(t.obstacle);
+    if (obstacles[k].kind == Obstacle::Kind::plane) continue;
+    const Vec3 ends[4] = {x.col(t.edge), x.col(t.edge + 1), a_W_[k], b_W_[k]};
+    const Vec3 moves[4] = {fraction * move.col(t.edge).head<3>(), fraction * move.col(t.edge + 1).head<3>(), Vec3::Zero(),
+                           Vec3::Zero()};
+    const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
+    const double keep = std::min(0.5 * (radius + bar_radius(obstacles[k], t.t)), 0.8 * distance);
+    if (std::max(moves[0].norm(), moves[1].norm()) <= distance - keep) continue;
+    fraction *= conservative_advance(ends, moves, keep);
+  }
+  return fraction;
+}
+
+}  // namespace filum
