@@ -1,0 +1,67 @@
+#include "devices/forceps_calibration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/yaml_file.h"
+
+namespace filum {
+namespace {
+
+constexpr Range kCounts = {0.0, 65535.0, false};
+
+std::uint16_t nearest_count(double count) noexcept {
+  return static_cast<std::uint16_t>(std::lround(std::clamp(count, 0.0, 65535.0)));
+}
+
+ForcepsCalibration read(const YamlNode& file) {
+  file.choice("format", {"filum-forceps/1"});
+  ForcepsCalibration c;
+  c.name = file.text("name");
+  c.source = file.text("source");
+  c.identity = static_cast<std::uint32_t>(file.integer_or("identity", 0, 0, std::numeric_limits<int>::max()));
+  const YamlNode angle = file.map("angle");
+  c.angle_zero = angle.quantity("zero", "count", kCounts);
+  c.angle_gain = angle.quantity("gain", "rad/count");
+  if (c.angle_gain == 0.0) angle.refuse("gain", "not zero");
+  c.angle_uncertainty = angle.quantity("uncertainty", "rad", Range::not_negative());
+  c.angle_limit = angle.quantity("limit", "rad", {0.0, std::numbers::pi / 2, true});
+  const YamlNode force = file.map("force");
+  c.force_zero = force.quantity("zero", "count", kCounts);
+  c.force_gain = force.quantity("gain", "N/count");
+  if (c.force_gain == 0.0) force.refuse("gain", "not zero");
+  c.force_uncertainty = force.quantity("uncertainty", "N", Range::not_negative());
+  c.force_limit = force.quantity("limit", "N", {0.0, 50.0, true});
+  file.finish();
+  return c;
+}
+
+}  // namespace
+
+ForcepsCalibration ForcepsCalibration::load(const std::string& path) {
+  return read(YamlNode::load(path));
+}
+
+ForcepsCalibration ForcepsCalibration::parse(const std::string& text, const std::string& file_name) {
+  return read(YamlNode::parse(text, file_name));
+}
+
+double ForcepsCalibration::angle(std::uint16_t count) const noexcept {
+  return std::clamp(angle_gain * (count - angle_zero), 0.0, angle_limit);
+}
+
+double ForcepsCalibration::force(std::uint16_t count) const noexcept {
+  return std::clamp(force_gain * (count - force_zero), 0.0, force_limit);
+}
+
+std::uint16_t ForcepsCalibration::angle_count(double angle) const noexcept {
+  return nearest_count(angle_zero + angle / angle_gain);
+}
+
+std::uint16_t ForcepsCalibration::force_count(double force) const noexcept {
+  return nearest_count(force_zero + force / force_gain);
+}
+
+}  // namespace filum

@@ -1,0 +1,36 @@
+#pragma once
+// From raw counts to opening angle and squeeze, by a calibration file in models/forceps/ (format
+// filum-forceps/1).
+
+#include <cstdint>
+#include <string>
+
+namespace filum {
+
+struct ForcepsCalibration {
+  std::string name;
+  std::string source;
+  std::uint32_t identity = 0;      // as the handle says in its hello, 0 = not tied to one handle
+  double angle_zero = 0.0;         // [count] with the jaws just closed
+  double angle_gain = 0.0;         // [rad/count]
+  double angle_uncertainty = 0.0;  // [rad], one standard deviation
+  double force_zero = 0.0;         // [count] without load
+  double force_gain = 0.0;         // [N/count]
+  double force_uncertainty = 0.0;  // [N], one standard deviation
+  double angle_limit = 0.0;        // [rad], mechanical stop
+  double force_limit = 0.0;        // [N], above this the sensor is overloaded
+
+  /// Throws InputError.
+  static ForcepsCalibration load(const std::string& path);
+  static ForcepsCalibration parse(const std::string& text, const std::string& file_name);
+
+  /// [rad], between 0 and the stop.
+  double angle(std::uint16_t count) const noexcept;
+  /// [N], between 0 and the overload limit.
+  double force(std::uint16_t count) const noexcept;
+  /// The count that comes nearest to a value; used to play scripts through the wire.
+  std::uint16_t angle_count(double angle) const noexcept;
+  std::uint16_t force_count(double force) const noexcept;
+};
+
+}  // namespace filum
