@@ -158,6 +158,12 @@ Vec3 parallel_transport(const Vec3& d, const Vec3& a, const Vec3& b) noexcept {
   return d + axis.cross(d) + axis.cross(axis.cross(d)) / c;
 }
 
+double reference_twist(const Vec3& d0, const Vec3& t0, const Vec3& d1, const Vec3& t1, double previous) noexcept {
+  Vec3 u = parallel_transport(d0, t0, t1);
+  u = std::cos(previous) * u + std::sin(previous) * t1.cross(u);
+  return previous + signed_angle(u, d1, t1);
+}
+
 RodState RodState::from_nodes(const Points& nodes, int capacity, bool naturally_straight) {
   RodState s;
   const int n = static_cast<int>(nodes.cols());
@@ -218,10 +224,7 @@ void update_geometry(const RodState& reference, const Points& x, const Eigen::Ve
     g.kappa(0, i) = 0.5 * kb.dot(g.m2.col(i - 1) + g.m2.col(i));
     g.kappa(1, i) = -0.5 * kb.dot(g.m1.col(i - 1) + g.m1.col(i));
     // Reference twist: what parallel transport in space leaves between neighbouring directors, continuous in time.
-    const double previous = reference.ref_twist[i];
-    Vec3 u = parallel_transport(g.d1.col(i - 1), te, tf);
-    u = std::cos(previous) * u + std::sin(previous) * tf.cross(u);
-    g.ref_twist[i] = previous + signed_angle(u, g.d1.col(i), tf);
+    g.ref_twist[i] = reference_twist(g.d1.col(i - 1), te, g.d1.col(i), tf, reference.ref_twist[i]);
     g.twist[i] = theta[i] - theta[i - 1] + g.ref_twist[i];
   }
 }

@@ -94,6 +94,10 @@ void accept_geometry(const RodGeometry& g, const Points& x, const Eigen::VectorX
 /// Axial force [N] in edge j, positive in tension.
 double edge_tension(const RodMaterial& m, const RodState& s, int j) noexcept;
 
+/// Angle [rad] from d0 (normal to t0), carried to t1 by parallel transport, to d1 (normal to t1); of all angles that differ by
+/// whole turns the one nearest to `previous`.
+double reference_twist(const Vec3& d0, const Vec3& t0, const Vec3& d1, const Vec3& t1, double previous) noexcept;
+
 /// Parallel transport of d (normal to unit vector a) to unit vector b along the shortest rotation; b != -a.
 Vec3 parallel_transport(const Vec3& d, const Vec3& a, const Vec3& b) noexcept;
 

@@ -141,7 +141,7 @@ void RodContact::remember(std::vector<ContactBristle>& memory) const noexcept {
   memory.clear();
   for (const RodPair& p : pairs_) {
     if (p.force <= 0.0 || memory.size() == memory.capacity()) continue;
-    memory.push_back({p.i, p.j, p.friction.xi});
+    memory.push_back({p.i, p.j, p.friction.xi, p.force});
   }
 }
 

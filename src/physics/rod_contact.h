@@ -31,6 +31,7 @@ struct ContactMaterial {
 struct ContactBristle {
   std::int32_t i = -1, j = -1;        // edges, i < j (or edge and obstacle)
   Vec3 xi = Vec3::Zero();             // [m]
+  double force = 0.0;                 // [N], normal; for those who look, the step does not read it
 };
 
 /// One near pair of edges in the present configuration.

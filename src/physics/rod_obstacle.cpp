@@ -39,11 +39,12 @@ void RodObstacles::find_touches(const RodState& s, const Points& x, double radiu
     a_W_[k] = X * obstacles[k].a_B;
     b_W_[k] = X * obstacles[k].b_B;
   }
-  for (int j = 0; j + 1 < s.n; ++j) {
+  double arc = s.arc_start;
+  for (int j = 0; j + 1 < s.n; arc += s.rest_length[j++]) {
     const Vec3 low = x.col(j).cwiseMin(x.col(j + 1)), high = x.col(j).cwiseMax(x.col(j + 1));
     for (int k = 0; k < static_cast<int>(obstacles.size()); ++k) {
       const Obstacle& o = obstacles[k];
-      if (!o.enabled) continue;
+      if (arc + s.rest_length[j] > o.ignore_from && arc < o.ignore_to) continue;
       if (o.kind == Obstacle::Kind::plane) {
         const Vec3 n = (b_W_[k] - a_W_[k]).normalized();
         if (n.dot(x.col(j) - a_W_[k]) < radius + reach) collect(j, k, 0.0);
@@ -74,7 +75,7 @@ void RodObstacles::remember(std::vector<ContactBristle>& memory) const noexcept 
   memory.clear();
   for (const ObstacleTouch& t : touches_) {
     if (t.force <= 0.0 || memory.size() == memory.capacity()) continue;
-    memory.push_back({t.edge, t.obstacle, t.friction.xi});
+    memory.push_back({t.edge, t.obstacle, t.friction.xi, t.force});
   }
 }
 

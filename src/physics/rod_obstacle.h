@@ -25,7 +25,7 @@ struct Obstacle {
   Vec3 a_B = Vec3::Zero(), b_B = Vec3::UnitZ();  // [m], ends of the axis in the body's frame
   double r_a = 0, r_b = 0;                        // [m]
   double friction = 0.2;                          // [-]
-  bool enabled = true;
+  double ignore_from = 1.0, ignore_to = 0.0;      // [m], stretch of the thread it does not touch (held in the jaws), by arc
 };
 
 struct ObstacleTouch {

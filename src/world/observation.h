@@ -26,7 +26,7 @@ struct ToolObservation {
 
 /// Something that happened in a step. `name` is one of the constants in kEventNames (static storage).
 struct WorldEvent {
-  const char* name = "";          // "grasp", "drop", "slip", "cut", "thread-break", "thread-overload", "overrun", "solver-trouble", "input-lost", "input-back"
+  const char* name = "";          // "grasp", "release", "drop", "cut", "thread-break", "thread-overload", "overrun", "solver-trouble", "input-lost", "input-back"
   int tool = -1;                  // tool index or -1
   double value = 0.0;             // what the event measured, unit below
   const char* unit = "-";
@@ -85,7 +85,8 @@ struct SceneDescription {
   double thread_radius = 0.0;     // [m]
   double thread_strength = 0.0;   // [N]
   double dt = 2e-3;               // [s]
-  PostShape post;
+  PostShape post;                 // the bar the knot goes round
+  PostShape base;                 // the bar below it; the thread lies in the slit between the two
   bool has_post = false;
   double floor_height = 0.0;      // [m], z of the background sheet
   int n_tools = 0;

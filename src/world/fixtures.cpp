@@ -1,0 +1,45 @@
+#include "world/fixtures.h"
+
+#include <algorithm>
+
+namespace filum {
+
+void add_fixtures(const Model& model, RodObstacles& obstacles) {
+  const int body = static_cast<int>(obstacles.bodies.size());
+  obstacles.bodies.emplace_back();
+  for (const PostShape* bar : {&model.description.post, &model.description.base}) {
+    Obstacle o;
+    o.body = body;
+    o.a_B = bar->p_W - bar->half_length * bar->axis_W;
+    o.b_B = bar->p_W + bar->half_length * bar->axis_W;
+    o.r_a = o.r_b = bar->radius;
+    o.friction = model.post_friction;
+    obstacles.obstacles.push_back(o);
+  }
+  Obstacle sheet;
+  sheet.kind = Obstacle::Kind::plane;
+  sheet.body = body;
+  sheet.a_B = Vec3(0, 0, model.description.floor_height);
+  sheet.b_B = sheet.a_B + Vec3::UnitZ();
+  sheet.friction = model.post_friction;
+  obstacles.obstacles.push_back(sheet);
+}
+
+double arc_on_post(const Model& model, const RodState& thread) noexcept {
+  const PostShape &post = model.description.post, &base = model.description.base;
+  const Vec3 slit = 0.5 * (post.p_W + base.p_W);
+  double nearest = 1.0, found = thread.arc_start, arc = thread.arc_start;
+  for (int j = 0; j + 1 < thread.n; arc += thread.rest_length[j++]) {
+    const Vec3 a = thread.x.col(j), e = thread.x.col(j + 1) - thread.x.col(j);
+    const Vec3 across_a = (a - slit) - (a - slit).dot(post.axis_W) * post.axis_W;
+    const Vec3 across_e = e - e.dot(post.axis_W) * post.axis_W;
+    const double f = std::clamp(-across_a.dot(across_e) / std::max(across_e.squaredNorm(), 1e-18), 0.0, 1.0);
+    const double distance = (across_a + f * across_e).norm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    found = arc + f * thread.rest_length[j];
+  }
+  return found;
+}
+
+}  // namespace filum

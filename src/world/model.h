@@ -1,0 +1,28 @@
+#pragma once
+// The constant part of a scene: materials, instruments, post, first shape of the thread. Immutable after load.
+
+#include <string>
+#include <vector>
+
+#include "physics/implicit_rod.h"
+#include "physics/instrument.h"
+#include "physics/rod_resolution.h"
+#include "world/observation.h"
+
+namespace filum {
+
+struct Model {
+  SceneDescription description;
+  RodMaterial thread;
+  ContactMaterial contact;
+  double post_friction = 0.3;      // [-], thread on the post and the sheet
+  double jaw_friction = 0.15;      // [-], thread on the outside of polished jaws
+  Points thread_path;              // [m], 3 x n, first shape of the thread, short end first
+  ResolutionOptions resolution;
+  RodStepOptions step;
+  std::vector<InstrumentParameters> instruments;
+  std::vector<Pose> instrument_start;
+  std::vector<std::string> sources;  // files it was read from, relative to the root
+};
+
+}  // namespace filum

@@ -1,0 +1,177 @@
+#include "world/scene_file.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/yaml_file.h"
+#include "world/world.h"
+
+namespace filum {
+namespace {
+
+YamlNode open(const std::string& path, const std::string& format) {
+  YamlNode file = YamlNode::load(path);
+  if (file.text("format") != format) file.refuse("format", format);
+  return file;
+}
+
+/// A measured quantity: { value, uncertainty, source }. Uncertainty and source are demanded, so that no number stands alone.
+double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
+  const YamlNode field = file.map(key);
+  field.text("source");
+  if (unit == "-") {
+    field.number("uncertainty", Range::not_negative());
+    return field.number("value", range);
+  }
+  field.quantity("uncertainty", unit, Range::not_negative());
+  return field.quantity("value", unit, range);
+}
+
+Pose read_pose(const YamlNode& node) {
+  Pose X;
+  X.p = node.vec3("p", "mm");
+  const Vec3 z = node.vec3("handle", "-");
+  const Vec3 x = node.vec3("opening", "-");
+  if (z.norm() < 1e-6) node.refuse("handle", "a direction");
+  if (z.cross(x).norm() < 1e-6) node.refuse("opening", "a direction that is not along the handle");
+  const Vec3 zu = z.normalized(), xu = (x - x.dot(zu) * zu).normalized();
+  Mat3 r;
+  r << xu, zu.cross(xu), zu;
+  X.q = Quat(r);
+  return X;
+}
+
+PostShape read_bar(const YamlNode& node) {
+  PostShape bar;
+  bar.p_W = node.vec3("centre", "mm");
+  bar.axis_W = node.vec3("axis", "-").normalized();
+  bar.radius = node.quantity("radius", "mm", Range::positive());
+  bar.half_length = 0.5 * node.quantity("length", "mm", Range::positive());
+  return bar;
+}
+
+Points read_thread_path(const YamlNode& scene, double longest) {
+  const double length = scene.quantity("length", "mm", {1e-3, 1.0});
+  const Vec3 tip = scene.vec3("short_end", "mm");
+  const Vec3 direction = scene.vec3("direction", "-").normalized();
+  const int n = std::max(8, static_cast<int>(std::ceil(length / longest)) + 1);
+  Points path(3, n);
+  for (int i = 0; i < n; ++i) path.col(i) = tip + direction * (length * i / (n - 1));
+  return path;
+}
+
+void read_resolution(const YamlNode& node, ResolutionOptions& o, int& capacity) {
+  o.shortest = node.quantity("shortest", "um", Range::positive());
+  o.longest = node.quantity("longest", "um", {o.shortest, 1.0});
+  o.touching_edge = node.quantity("touching", "um", Range::positive());
+  capacity = node.integer("nodes", 16, 2000);
+}
+
+ToolShape shape_of(const InstrumentParameters& p) {
+  ToolShape s;
+  s.name = p.name;
+  s.kind = p.kind;
+  s.jaw_length = p.jaw_length;
+  s.tip_radius = p.tip_radius;
+  s.base_radius = p.base_radius;
+  s.pad_length = p.pads.length;
+  s.max_angle = p.max_angle;
+  return s;
+}
+
+void read_instruments(const std::string& root, const YamlNode& scene, Model& m) {
+  for (const YamlNode& item : scene.items("instruments")) {
+    if (m.instruments.size() == m.description.tools.size()) item.refuse("model", "at most three instruments");
+    const std::string file = "models/instrument/" + item.text("model") + ".yaml";
+    m.sources.push_back(file);
+    InstrumentParameters p = load_instrument(root + "/" + file);
+    p.name = item.text_or("name", p.name);
+    m.description.tools[m.instruments.size()] = shape_of(p);
+    m.instruments.push_back(p);
+    m.instrument_start.push_back(read_pose(item));
+  }
+  m.description.n_tools = static_cast<int>(m.instruments.size());
+}
+
+}  // namespace
+
+RodMaterial load_suture(const std::string& path, ContactMaterial& contact) {
+  const YamlNode file = open(path, "filum-suture/1");
+  file.text("title");
+  RodMaterial m;
+  m.radius = 0.5 * measured(file, "diameter", "um", Range::positive());
+  m.density = measured(file, "density", "kg/m3", Range::positive());
+  m.EA = measured(file, "axial_stiffness", "N", Range::positive());
+  m.EI = measured(file, "bending_stiffness", "N.m2", Range::positive());
+  m.GJ = measured(file, "twisting_stiffness", "N.m2", Range::positive());
+  m.friction = measured(file, "friction_coefficient", "-", Range::between(0.0, 2.0));
+  m.strength = measured(file, "strength", "N", Range::positive());
+  m.drag = measured(file, "air_drag", "N.s/m2", Range::not_negative());
+  contact.stiffness = measured(file, "squeeze_stiffness", "N/m", Range::positive());
+  contact.friction = m.friction;
+  file.finish();
+  return m;
+}
+
+InstrumentParameters load_instrument(const std::string& path) {
+  const YamlNode file = open(path, "filum-instrument/1");
+  InstrumentParameters p;
+  p.name = file.text("title");
+  p.kind = file.choice("kind", {"forceps", "needle-holder", "scissors"});
+  p.jaw_length = file.quantity("jaw_length", "mm", Range::positive());
+  p.tip_radius = file.quantity("tip_radius", "mm", Range::positive());
+  p.base_radius = file.quantity("base_radius", "mm", Range::positive());
+  p.shaft_length = file.quantity("shaft_length", "mm", Range::positive());
+  p.max_angle = file.quantity("max_angle", "deg", {0.01, 1.5});
+  p.mass = file.quantity("apparent_mass", "g", Range::positive());
+  p.inertia = file.quantity("apparent_inertia", "kg.m2", Range::positive());
+  p.coupling_stiffness = file.quantity("coupling_stiffness", "N/m", Range::positive());
+  p.turning_stiffness = file.quantity("turning_stiffness", "N.m/rad", Range::positive());
+  p.coupling_damping = 2.0 * std::sqrt(p.coupling_stiffness * p.mass);  // critical
+  p.turning_damping = 2.0 * std::sqrt(p.turning_stiffness * p.inertia);
+  p.grip_stiffness = file.quantity("grip_stiffness", "N.m/rad", Range::positive());
+  p.max_grip_force = file.quantity("max_grip_force", "N", Range::positive());
+  p.pads.half_width = 0.5 * file.quantity("pad_width", "mm", Range::positive());
+  p.pads.length = file.quantity("pad_length", "mm", Range::positive());
+  p.pads.friction = file.number("pad_friction", Range::between(0.0, 2.0));
+  file.text("source");
+  file.finish();
+  return p;
+}
+
+std::shared_ptr<const Model> load_model(const std::string& root, const std::string& task, const std::string& model_file) {
+  if (task.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos || task.empty())
+    throw InputError("command line", "task", task, "a task name such as knot-square (see `filum list`)");
+  const std::string path = root + "/curricula/" + task + "/scene.yaml";
+  if (!std::filesystem::exists(path))
+    throw InputError("command line", "task", task, "the name of a task with a scene (see `filum list`)");
+  auto m = std::make_shared<Model>();
+  const YamlNode scene = open(path, "filum-scene/1");
+  m->sources.push_back("curricula/" + task + "/scene.yaml");
+  SceneDescription& d = m->description;
+  d.task = task;
+  d.title = scene.text("title");
+  const std::string suture = scene.text("suture");
+  const std::string suture_file = "models/suture/" + suture + ".yaml";
+  d.suture = model_file.empty() ? suture : std::filesystem::path(model_file).stem().string();
+  m->thread = load_suture(model_file.empty() ? root + "/" + suture_file : model_file, m->contact);
+  m->sources.push_back(model_file.empty() ? suture_file : model_file);
+  d.thread_radius = m->thread.radius;
+  d.thread_strength = m->thread.strength;
+  read_resolution(scene.map("resolution"), m->resolution, d.capacity);
+  const YamlNode thread = scene.map("thread");
+  m->thread_path = read_thread_path(thread, m->resolution.longest);
+  d.post = read_bar(scene.map("post"));
+  d.base = read_bar(scene.map("base"));
+  d.has_post = true;
+  d.floor_height = scene.quantity("floor", "mm");
+  m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
+  m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));
+  read_instruments(root, scene, *m);
+  d.dt = m->step.dt = scene.quantity("step", "ms", {1e-4, 5e-3});
+  scene.finish();
+  return m;
+}
+
+}  // namespace filum

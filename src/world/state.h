@@ -1,0 +1,26 @@
+#pragma once
+// Everything that changes from step to step: copyable, complete, without pointers. Same State, same Inputs, same next State.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "physics/implicit_rod.h"
+#include "physics/instrument.h"
+
+namespace filum {
+
+struct State {
+  std::uint64_t step = 0;
+  RodState thread;
+  RodMemory memory;
+  std::vector<InstrumentState> instruments;
+  std::vector<Vec3> force, torque;          // [N], [N m], of the scene on each tool in the last step, about its tip
+  std::array<std::int32_t, 3> armed{};      // jaws have been open since they last closed: they may take the thread
+  std::array<std::int32_t, 3> valid{};      // the device was live in the last step
+  double overloaded = 0.0;                  // [N], highest tension since the last overload event, 0 when below
+  double cut_low = -1.0, cut_high = -1.0;   // [m], arc of the cuts below and above the post, -1 none
+  double break_arc = -1.0;                  // [m], where the thread parted under tension, -1 none
+};
+
+}  // namespace filum

@@ -1,0 +1,105 @@
+#include "world/state_hash.h"
+
+#include <array>
+
+#include "base/hash.h"
+
+namespace filum {
+namespace {
+
+template <class Matrix>
+std::uint64_t hash_columns(const Matrix& m, int n) noexcept {
+  return hash_bytes(m.data(), sizeof(typename Matrix::Scalar) * static_cast<std::size_t>(m.rows() * n));
+}
+
+std::uint64_t hash_values(const Eigen::VectorXd& v, int n) noexcept {
+  return hash_bytes(v.data(), sizeof(double) * static_cast<std::size_t>(n));
+}
+
+std::uint64_t hash_bristles(const std::vector<ContactBristle>& bristles) noexcept {
+  std::uint64_t h = bristles.size();
+  for (const ContactBristle& b : bristles) {
+    const std::array<double, 5> row = {static_cast<double>(b.i), static_cast<double>(b.j), b.xi.x(), b.xi.y(), b.xi.z()};
+    h = hash_bytes(row.data(), sizeof(row), h);
+  }
+  return h;
+}
+
+std::uint64_t hash_grasps(const std::vector<GraspPoint>& grasps) noexcept {
+  std::uint64_t h = grasps.size();
+  for (const GraspPoint& g : grasps) {
+    const std::array<double, 5> row = {static_cast<double>(g.tool), g.arc, g.anchor_T.x(), g.anchor_T.y(), g.anchor_T.z()};
+    h = hash_bytes(row.data(), sizeof(row), h);
+  }
+  return h;
+}
+
+std::uint64_t hash_pose(const Pose& X, std::uint64_t h) noexcept {
+  h = hash_bytes(X.p.data(), 3 * sizeof(double), h);
+  return hash_bytes(X.q.coeffs().data(), 4 * sizeof(double), h);
+}
+
+std::uint64_t hash_instruments(const State& s) noexcept {
+  std::uint64_t h = 0;
+  for (const InstrumentState& i : s.instruments) {
+    h = hash_pose(i.X_WD, hash_pose(i.X_WT, h));
+    h = hash_bytes(i.w.data(), 3 * sizeof(double), hash_bytes(i.v.data(), 3 * sizeof(double), h));
+    const std::array<double, 4> row = {i.angle, i.angle_rate, i.grip_force, i.grip_command};
+    h = hash_bytes(row.data(), sizeof(row), h);
+  }
+  return h;
+}
+
+std::uint64_t hash_wrenches(const State& s) noexcept {
+  std::uint64_t h = 0;
+  for (std::size_t i = 0; i < s.force.size(); ++i)
+    h = hash_bytes(s.torque[i].data(), 3 * sizeof(double), hash_bytes(s.force[i].data(), 3 * sizeof(double), h));
+  return h;
+}
+
+std::uint64_t hash_flags(const State& s) noexcept {
+  const std::array<double, 5> row = {s.thread.arc_start, s.overloaded, s.cut_low, s.cut_high, s.break_arc};
+  std::uint64_t h = hash_bytes(row.data(), sizeof(row), s.step);
+  h = hash_bytes(s.armed.data(), sizeof(s.armed), h);
+  return hash_bytes(s.valid.data(), sizeof(s.valid), h);
+}
+
+constexpr int kArrays = 15;
+constexpr std::array<const char*, kArrays> kNames = {
+    "positions",  "velocities", "theta",  "theta_dot",    "directors",        "ref_twist", "rest_length", "rest_kappa",
+    "rest_twist", "alive",      "grasps", "self_bristles", "obstacle_bristles", "instruments", "flags"};
+
+std::array<std::uint64_t, kArrays> hashes(const State& s) noexcept {
+  const RodState& r = s.thread;
+  return {hash_columns(r.x, r.n),
+          hash_columns(r.v, r.n),
+          hash_values(r.theta, r.n),
+          hash_values(r.theta_dot, r.n),
+          hash_columns(r.d1, r.n - 1),
+          hash_values(r.ref_twist, r.n),
+          hash_values(r.rest_length, r.n - 1),
+          hash_columns(r.rest_kappa, r.n),
+          hash_values(r.rest_twist, r.n),
+          hash_bytes(r.alive.data(), sizeof(int) * static_cast<std::size_t>(r.n - 1)),
+          hash_grasps(s.memory.grasps),
+          hash_bristles(s.memory.self),
+          hash_bristles(s.memory.obstacle),
+          hash_wrenches(s) ^ hash_instruments(s),
+          hash_flags(s)};
+}
+
+}  // namespace
+
+std::uint64_t hash_state(const State& s) noexcept {
+  const auto all = hashes(s);
+  return hash_bytes(all.data(), sizeof(all));
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> array_hashes(const State& s) {
+  const auto all = hashes(s);
+  std::vector<std::pair<std::string, std::uint64_t>> named;
+  for (std::size_t k = 0; k < kArrays; ++k) named.emplace_back(kNames[k], all[k]);
+  return named;
+}
+
+}  // namespace filum

@@ -1,0 +1,244 @@
+#include "world/world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "world/fixtures.h"
+#include "world/model.h"
+#include "world/observe.h"
+#include "world/state.h"
+#include "world/state_hash.h"
+
+namespace filum {
+namespace {
+
+constexpr double kTakeGap = 0.10e-3;   // [m], tip gap below which closing jaws take what lies between them
+constexpr double kLeaveGap = 0.16e-3;  // [m], tip gap above which they have let go
+constexpr double kIgnore = 0.45e-3;    // [m], thread on either side of the pads that does not touch the jaws that hold it
+
+}  // namespace
+
+struct World::Impl {
+  std::shared_ptr<const Model> model;
+  State state;
+  ImplicitRod rod;
+  Instruments instruments;
+  std::vector<InstrumentCommand> commands;
+  RodStepSummary solver;
+  Observation observation;
+
+  explicit Impl(std::shared_ptr<const Model> m);
+  void read_inputs(const Inputs& inputs) noexcept;
+  void move_instruments() noexcept;
+  void open_and_close_jaws() noexcept;
+  void take_or_cut(int tool) noexcept;
+  void ignore_held_thread() noexcept;
+  void step_thread() noexcept;
+  void part_overloaded_thread() noexcept;
+  void observe() noexcept;
+
+  double tip_gap(int tool) const noexcept {
+    const InstrumentState& s = state.instruments[static_cast<std::size_t>(tool)];
+    return 2.0 * model->instruments[static_cast<std::size_t>(tool)].jaw_length * std::sin(0.5 * s.angle);
+  }
+  int held_by(int tool) const noexcept {
+    return static_cast<int>(std::count_if(state.memory.grasps.begin(), state.memory.grasps.end(),
+                                          [&](const GraspPoint& p) { return p.tool == tool; }));
+  }
+  void event(const char* name, int tool, double value, const char* unit) noexcept {
+    if (observation.n_events < static_cast<int>(observation.events.size()))
+      observation.events[static_cast<std::size_t>(observation.n_events++)] = {name, tool, value, unit};
+  }
+};
+
+World::Impl::Impl(std::shared_ptr<const Model> m)
+    : model(std::move(m)),
+      rod(model->thread, model->contact, model->description.capacity, model->description.n_tools),
+      instruments(model->instruments) {
+  const auto n_tools = model->instruments.size();
+  state.thread = RodState::from_nodes(model->thread_path, model->description.capacity);
+  state.memory = rod.make_memory();
+  commands.resize(n_tools);
+  for (std::size_t i = 0; i < n_tools; ++i) {
+    InstrumentState s;
+    s.X_WT = s.X_WD = model->instrument_start[i];
+    s.angle = s.grip_command = 0.5 * model->instruments[i].max_angle;
+    state.instruments.push_back(s);
+    rod.grasps.tools[i].pads = model->instruments[i].pads;
+    rod.obstacles.bodies.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      Obstacle bar;
+      bar.body = static_cast<int>(i);
+      bar.friction = model->jaw_friction;
+      rod.obstacles.obstacles.push_back(bar);
+    }
+  }
+  state.force.assign(n_tools, Vec3::Zero());
+  state.torque.assign(n_tools, Vec3::Zero());
+  add_fixtures(*model, rod.obstacles);
+  size_observation(*model, observation);
+  observe();
+}
+
+World::World(std::shared_ptr<const Model> model) : impl_(std::make_unique<Impl>(std::move(model))) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+
+void World::step(const Inputs& inputs) noexcept {
+  impl_->observation.n_events = 0;
+  impl_->read_inputs(inputs);
+  impl_->move_instruments();
+  impl_->open_and_close_jaws();
+  impl_->step_thread();
+  impl_->part_overloaded_thread();
+  adapt_resolution(impl_->model->resolution, impl_->model->description.capacity, impl_->rod.contact(), impl_->rod.obstacles,
+                   impl_->state.thread, impl_->state.memory);
+  ++impl_->state.step;
+  impl_->observe();
+}
+
+void World::Impl::read_inputs(const Inputs& inputs) noexcept {
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const ToolInput& in = inputs.tools[i];
+    const bool sound = in.valid && in.X_WD.finite() && std::abs(in.X_WD.q.norm() - 1.0) < 1e-3 && std::isfinite(in.grip_angle) &&
+                       std::isfinite(in.grip_force);
+    InstrumentCommand& c = commands[i];
+    c.follow = sound;
+    if (sound != (state.valid[i] != 0)) event(sound ? "input-back" : "input-lost", static_cast<int>(i), 0.0, "-");
+    state.valid[i] = sound;
+    if (!sound) continue;
+    c = {in.X_WD, in.grip_angle, in.grip_force, in.has_grip_force, true};
+    c.X_WD.q.normalize();
+  }
+}
+
+void World::Impl::move_instruments() noexcept {
+  for (std::size_t i = 0; i < commands.size(); ++i) rod.obstacles.bodies[i].X_start = state.instruments[i].X_WT;
+  instruments.step(state.instruments, commands, state.force, state.torque, model->step.dt);
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    ObstacleBody& body = rod.obstacles.bodies[i];
+    body.X_end = state.instruments[i].X_WT;
+    const InstrumentBars bars =
+        instrument_bars(model->instruments[i], state.instruments[i].angle, 2.0 * model->thread.radius);
+    for (std::size_t k = 0; k < 3; ++k) {
+      Obstacle& bar = rod.obstacles.obstacles[3 * i + k];
+      bar.a_B = bars.a_T[k];
+      bar.b_B = bars.b_T[k];
+      bar.r_a = bars.r_a[k];
+      bar.r_b = bars.r_b[k];
+    }
+    rod.grasps.tools[i].X_now = state.instruments[i].X_WT;
+    rod.grasps.tools[i].grip_force = state.instruments[i].grip_force;
+  }
+}
+
+void World::Impl::open_and_close_jaws() noexcept {
+  for (int i = 0; i < static_cast<int>(commands.size()); ++i) {
+    const double gap = tip_gap(i);
+    auto& armed = state.armed[static_cast<std::size_t>(i)];
+    if (gap > kLeaveGap) {
+      if (held_by(i) > 0) event("release", i, state.instruments[static_cast<std::size_t>(i)].grip_force, "N");
+      std::erase_if(state.memory.grasps, [&](const GraspPoint& p) { return p.tool == i; });
+      armed = 1;
+    } else if (armed != 0 && gap < kTakeGap && held_by(i) == 0) {
+      take_or_cut(i);
+      if (gap < model->thread.radius) armed = 0;
+    }
+  }
+  ignore_held_thread();
+}
+
+void World::Impl::take_or_cut(int i) noexcept {
+  const InstrumentParameters& p = model->instruments[static_cast<std::size_t>(i)];
+  const Pose& X = state.instruments[static_cast<std::size_t>(i)].X_WT;
+  std::vector<GraspPoint>& points = state.memory.grasps;
+  const double reach = 0.5 * tip_gap(i) + 4.0 * model->thread.radius;
+  const int taken = grasp_between(p.pads, X, i, state.thread, reach, points);
+  if (taken == 0) return;
+  if (p.kind != "scissors") {
+    state.armed[static_cast<std::size_t>(i)] = 0;
+    event("grasp", i, points.back().arc, "m");
+    return;
+  }
+  const double arc = points[points.size() - static_cast<std::size_t>(taken)].arc;
+  points.resize(points.size() - static_cast<std::size_t>(taken));
+  const int edge = locate_arc(state.thread, arc).first;
+  if (state.thread.alive[edge] == 0) return;
+  state.thread.alive[edge] = 0;
+  state.armed[static_cast<std::size_t>(i)] = 0;
+  (arc < arc_on_post(*model, state.thread) ? state.cut_low : state.cut_high) = arc;
+  event("cut", i, arc, "m");
+}
+
+void World::Impl::ignore_held_thread() noexcept {
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    double low = 1.0, high = 0.0;
+    for (const GraspPoint& p : state.memory.grasps) {
+      if (p.tool != static_cast<int>(i)) continue;
+      low = std::min(low, p.arc - kIgnore);
+      high = std::max(high, p.arc + kIgnore);
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      rod.obstacles.obstacles[3 * i + k].ignore_from = low;
+      rod.obstacles.obstacles[3 * i + k].ignore_to = high;
+    }
+  }
+}
+
+void World::Impl::step_thread() noexcept {
+  std::array<int, 3> before{};
+  for (std::size_t i = 0; i < commands.size(); ++i) before[i] = held_by(static_cast<int>(i));
+  solver = rod.step(state.thread, state.memory, model->step);
+  if (!solver.sound || !solver.converged) event("solver-trouble", -1, solver.residual, "N");
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    state.force[i] = rod.obstacles.bodies[i].force + rod.grasps.tools[i].force;
+    state.torque[i] = rod.obstacles.bodies[i].torque + rod.grasps.tools[i].torque;
+    if (before[i] > 0 && held_by(static_cast<int>(i)) == 0)
+      event("drop", static_cast<int>(i), state.instruments[i].grip_force, "N");
+  }
+}
+
+void World::Impl::part_overloaded_thread() noexcept {
+  double highest = 0.0, arc = state.thread.arc_start, arc_highest = 0.0;
+  int edge = -1;
+  for (int j = 0; j + 1 < state.thread.n; arc += state.thread.rest_length[j++]) {
+    const double tension = edge_tension(model->thread, state.thread, j);
+    if (tension <= highest) continue;
+    highest = tension;
+    edge = j;
+    arc_highest = arc;
+  }
+  if (highest > model->thread.strength) {
+    state.thread.alive[edge] = 0;
+    state.break_arc = arc_highest + 0.5 * state.thread.rest_length[edge];
+    event("thread-break", -1, highest, "N");
+  }
+  constexpr double kOverload = 0.6;  // of the strength; below kOverload/2 the next one counts anew
+  if (highest > kOverload * model->thread.strength) {
+    if (state.overloaded == 0.0) event("thread-overload", -1, highest, "N");
+    state.overloaded = std::max(state.overloaded, highest);
+  } else if (highest < 0.5 * kOverload * model->thread.strength) {
+    state.overloaded = 0.0;
+  }
+}
+
+void World::Impl::observe() noexcept {
+  fill_observation(*model, state, rod, solver, observation);
+  observation.state_hash = hash_state(state);
+}
+
+const Observation& World::observation() const noexcept { return impl_->observation; }
+const SceneDescription& World::description() const noexcept { return impl_->model->description; }
+const Model& World::model() const noexcept { return *impl_->model; }
+const State& World::state() const noexcept { return impl_->state; }
+
+void World::restore(const State& state) {
+  impl_->state = state;
+  impl_->observation.n_events = 0;
+  impl_->observe();
+}
+
+std::uint64_t World::state_hash() const noexcept { return impl_->observation.state_hash; }
+std::vector<std::pair<std::string, std::uint64_t>> World::array_hashes() const { return filum::array_hashes(impl_->state); }
+
+}  // namespace filum
