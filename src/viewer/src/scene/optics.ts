@@ -1,0 +1,71 @@
+// The microscope as geometry: where the two eyes are, how wide the field is and what is in focus. Millimetres, the scene's
+// own axes (z up). No three.js here, so that it can be tested without a screen.
+
+export interface OpticsState {
+  magnification: number; // 5 ... 40
+  focus: number; // [mm], height of the focal plane
+  centre: [number, number]; // [mm], point of the scene in the middle of the field
+  tilt: number; // [rad], inclination of the microscope from the vertical, towards the operator
+  eyeDistance: number; // [mm], stereo base at the objective
+}
+
+export const kMagnificationMin = 5;
+export const kMagnificationMax = 40;
+export const kWorkingDistance = 200; // [mm], objective to focal plane
+export const kFieldNumber = 200; // [mm], field diameter times magnification
+export const kAperture = 22; // [mm], of one beam path at the objective; sets the depth of field
+
+export function fieldDiameter(magnification: number): number {
+  return kFieldNumber / magnification;
+}
+
+export function clampMagnification(value: number): number {
+  return Math.min(kMagnificationMax, Math.max(kMagnificationMin, value));
+}
+
+/// One zoom step is a fixed ratio, as on a zoom ring.
+export function zoomed(magnification: number, steps: number): number {
+  return clampMagnification(magnification * Math.pow(1.12, steps));
+}
+
+/// Vertical opening angle [rad] of a camera that shows the whole field on a square picture.
+export function openingAngle(magnification: number): number {
+  return 2 * Math.atan(fieldDiameter(magnification) / 2 / kWorkingDistance);
+}
+
+/// Diameter [mm, in the focal plane] over which a point `defocus` mm away from the focal plane is spread.
+export function blurDiameter(defocus: number): number {
+  return (Math.abs(defocus) * kAperture) / Math.max(1, kWorkingDistance + defocus);
+}
+
+export interface Eye {
+  position: [number, number, number]; // [mm]
+  target: [number, number, number]; // [mm]
+  shift: number; // off-axis shift of the picture, as a share of the field diameter at the focal plane
+}
+
+/// `side`: -1 left eye, 0 the single eye of the mono view, 1 right eye. Both eyes look parallel and their pictures are
+/// shifted so that they agree in the focal plane (off-axis stereo: no keystone error).
+export function eyeAt(optics: OpticsState, side: -1 | 0 | 1): Eye {
+  const base = (side * optics.eyeDistance) / 2;
+  const target: [number, number, number] = [optics.centre[0], optics.centre[1], optics.focus];
+  return {
+    position: [
+      target[0] + base,
+      target[1] - kWorkingDistance * Math.sin(optics.tilt),
+      target[2] + kWorkingDistance * Math.cos(optics.tilt),
+    ],
+    target: [target[0] + base, target[1], target[2]],
+    shift: -base / fieldDiameter(optics.magnification),
+  };
+}
+
+/// Scale bar for the reticle: a round length [mm] that fills about a fifth of the field.
+export function scaleBar(magnification: number): number {
+  const wanted = fieldDiameter(magnification) / 5;
+  const decade = Math.pow(10, Math.floor(Math.log10(wanted)));
+  for (const step of [5, 2, 1]) {
+    if (wanted >= step * decade) return step * decade;
+  }
+  return decade;
+}

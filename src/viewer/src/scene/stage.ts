@@ -1,0 +1,168 @@
+// Everything that stands in the illuminated field: background sheet, practice post, instruments, thread and light.
+// It is built from the scene message and follows the frames; it works in millimetres and knows nothing of the screen.
+import * as THREE from "three";
+import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
+import type { Frame, Scene } from "../messages";
+import { Instrument, type Metals } from "./instruments";
+import { brushedTextures, sheetTextures } from "./textures";
+import { ThreadTube } from "./thread";
+
+const kMm = 1000;
+const kSheet = 120; // [mm], width of the background sheet
+
+export class Stage {
+  readonly scene = new THREE.Scene();
+  readonly key = new THREE.DirectionalLight(0xfff3e2, 2.5);
+  private readonly coaxial = new THREE.DirectionalLight(0xf4f8ff, 0.55);
+  private readonly content = new THREE.Group();
+  private readonly metals: Metals;
+  private readonly threadMaterial = new THREE.MeshPhysicalMaterial({
+    color: 0x0b1020, roughness: 0.34, clearcoat: 0.5, clearcoatRoughness: 0.25, specularIntensity: 0.8,
+  });
+  private instruments: Instrument[] = [];
+  private thread: ThreadTube | null = null;
+  private readonly points: { array: Float64Array } = { array: new Float64Array(0) };
+  private gaps: number[] = [];
+  private threadRadius = 0.0125;
+  private shadowSpan = 0;
+  floorHeight = 0; // [mm]
+  centre: [number, number] = [0, 0]; // [mm], middle of the field at the start
+  focusHeight = 0; // [mm], where a trainee would focus: the top of the post
+
+  constructor(renderer: THREE.WebGLRenderer) {
+    const room = new RoomEnvironment();
+    const generator = new THREE.PMREMGenerator(renderer);
+    this.scene.environment = generator.fromScene(room, 0.03).texture;
+    this.scene.environmentIntensity = 0.5;
+    generator.dispose();
+    room.dispose();
+    this.scene.background = new THREE.Color(0x020303);
+    this.metals = makeMetals();
+    this.key.castShadow = true;
+    this.key.shadow.bias = -0.0004;
+    this.key.shadow.normalBias = 0.012;
+    this.key.shadow.radius = 3.2;
+    this.scene.add(this.key, this.key.target, this.coaxial, this.coaxial.target, this.content);
+  }
+
+  describe(message: Scene): void {
+    this.clear();
+    this.floorHeight = message.floor_height * kMm;
+    this.focusHeight = message.post ? (message.post.position[2] + message.post.radius) * kMm : this.floorHeight;
+    this.centre = message.post ? [message.post.position[0] * kMm, message.post.position[1] * kMm] : [0, 0];
+    this.threadRadius = message.thread_radius * kMm;
+    this.addSheet();
+    if (message.post) this.addPost(message.post);
+    this.instruments = message.tools.map((shape, index) => new Instrument(shape, index, this.metals));
+    for (const instrument of this.instruments) this.content.add(instrument.group);
+    this.thread = new ThreadTube(Math.max(2, message.capacity), this.threadMaterial);
+    this.points.array = new Float64Array(3 * Math.max(2, message.capacity));
+    this.content.add(this.thread.mesh);
+  }
+
+  update(frame: Frame): void {
+    const points = this.points.array;
+    const count = Math.min(frame.positions.length, points.length);
+    for (let i = 0; i < count; ++i) points[i] = frame.positions[i] * kMm;
+    this.gaps.length = 0;
+    if (frame.break_edge >= 0) this.gaps.push(frame.break_edge);
+    for (const edge of frame.cuts) this.gaps.push(edge);
+    this.thread?.update(points, Math.floor(count / 3), this.threadRadius, this.gaps);
+    for (let i = 0; i < this.instruments.length && i < frame.tools.length; ++i) this.instruments[i].update(frame.tools[i]);
+  }
+
+  /// Light follows the microscope: an oblique lamp beside the objective for the shadows and a weak one along the view.
+  aim(target: THREE.Vector3, eye: THREE.Vector3, field: number, shadows: boolean, mapSize: number): void {
+    this.key.target.position.copy(target);
+    this.key.position.set(target.x - 62, target.y + 58, target.z + 150);
+    this.coaxial.target.position.copy(target);
+    this.coaxial.position.copy(eye);
+    const span = 0.62 * field;
+    const shadow = this.key.shadow;
+    this.key.castShadow = shadows;
+    if (shadow.mapSize.x !== mapSize) {
+      shadow.mapSize.set(mapSize, mapSize);
+      shadow.map?.dispose();
+      shadow.map = null;
+    }
+    if (Math.abs(span - this.shadowSpan) < 1e-6) return;
+    this.shadowSpan = span;
+    const camera = shadow.camera;
+    camera.left = camera.bottom = -span;
+    camera.right = camera.top = span;
+    camera.near = 110;
+    camera.far = 230;
+    camera.updateProjectionMatrix();
+  }
+
+  private clear(): void {
+    this.content.traverse((object) => {
+      if (object instanceof THREE.Mesh) object.geometry.dispose();
+    });
+    this.content.clear();
+    this.instruments = [];
+    this.thread = null;
+  }
+
+  private addSheet(): void {
+    const textures = sheetTextures(kSheet / 5);
+    const material = new THREE.MeshStandardMaterial({
+      map: textures.map, normalMap: textures.normal, roughnessMap: textures.rough, roughness: 1, metalness: 0,
+      normalScale: new THREE.Vector2(0.55, 0.55),
+    });
+    const sheet = new THREE.Mesh(new THREE.PlaneGeometry(kSheet, kSheet), material);
+    sheet.position.z = this.floorHeight;
+    sheet.receiveShadow = true;
+    this.content.add(sheet);
+  }
+
+  private addPost(post: NonNullable<Scene["post"]>): void {
+    const radius = post.radius * kMm, half = post.half_length * kMm;
+    const centre = new THREE.Vector3(...post.position).multiplyScalar(kMm);
+    const axis = new THREE.Vector3(...post.axis).normalize();
+    const bar = new THREE.Mesh(new THREE.CapsuleGeometry(radius, 2 * half, 16, 48, 1), new THREE.MeshPhysicalMaterial({
+      color: 0xead9c4, roughness: 0.42, sheen: 0.3, sheenColor: new THREE.Color(0xffd9c0), clearcoat: 0.35, clearcoatRoughness: 0.3,
+    }));
+    bar.position.copy(centre);
+    bar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), axis);
+    bar.castShadow = bar.receiveShadow = true;
+    this.content.add(bar);
+    for (const end of [-1, 1]) this.content.add(this.stanchion(centre.clone().addScaledVector(axis, end * half), axis, radius));
+  }
+
+  /// Foot that carries one end of the post.
+  private stanchion(top: THREE.Vector3, axis: THREE.Vector3, radius: number): THREE.Object3D {
+    const group = new THREE.Group();
+    const height = top.z - this.floorHeight;
+    const collar = new THREE.Mesh(new THREE.CylinderGeometry(1.45 * radius, 1.45 * radius, 1.6 * radius, 40), this.metals.bright);
+    collar.position.copy(top);
+    collar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), axis);
+    const leg = new THREE.Mesh(new THREE.CylinderGeometry(0.8 * radius, 0.8 * radius, height, 32), this.metals.bright);
+    leg.rotation.x = Math.PI / 2;
+    leg.position.set(top.x, top.y, top.z - height / 2);
+    const foot = new THREE.Mesh(new THREE.CylinderGeometry(2.6 * radius, 2.9 * radius, 0.5 * radius, 48), this.metals.dark);
+    foot.rotation.x = Math.PI / 2;
+    foot.position.set(top.x, top.y, this.floorHeight + 0.25 * radius);
+    group.add(collar, leg, foot);
+    group.traverse((object) => { object.castShadow = object.receiveShadow = true; });
+    return group;
+  }
+}
+
+function makeMetals(): Metals {
+  const brushed = brushedTextures();
+  const metal = (color: number, roughness: number, scale: number) => new THREE.MeshStandardMaterial({
+    color, metalness: 1, roughness, roughnessMap: brushed.rough, normalMap: brushed.normal,
+    normalScale: new THREE.Vector2(scale, scale), envMapIntensity: 1.25, side: THREE.FrontSide,
+  });
+  return {
+    bright: metal(0xc3c8cf, 0.44, 0.5),
+    dark: metal(0xa6a29a, 0.36, 0.4),
+    grip: metal(0xb99a5e, 0.62, 1.4),
+    bands: [
+      new THREE.MeshStandardMaterial({ color: 0x1667c4, roughness: 0.4, metalness: 0.2 }),
+      new THREE.MeshStandardMaterial({ color: 0xd98a12, roughness: 0.4, metalness: 0.2 }),
+      new THREE.MeshStandardMaterial({ color: 0x7a2f91, roughness: 0.4, metalness: 0.2 }),
+    ],
+  };
+}

@@ -1,0 +1,48 @@
+// Numbers for people: always with a unit, never with false precision.
+
+export function clock(seconds: number): string {
+  const whole = Math.max(0, Math.floor(seconds));
+  const tenths = Math.floor((Math.max(0, seconds) - whole) * 10);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}.${tenths}`;
+}
+
+/// [N] -> "123 mN", with three significant figures below 10 mN.
+export function milliNewton(newton: number): string {
+  const value = newton * 1000;
+  const digits = Math.abs(value) >= 10 ? 0 : Math.abs(value) >= 1 ? 1 : 2;
+  return `${value.toFixed(digits)} mN`;
+}
+
+const kShown: Record<string, [number, string]> = { N: [1000, "mN"], m: [1000, "mm"], "m/s": [1000, "mm/s"], rad: [180 / Math.PI, "°"] };
+
+/// Factor and unit in which a quantity is shown.
+export function shownUnit(unit: string): [number, string] {
+  return kShown[unit] ?? [1, unit === "-" ? "" : unit];
+}
+
+export function quantity(value: number | string | boolean | null, unit: string): string {
+  if (value === null) return "not measured";
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  if (typeof value === "string") return unit && unit !== "-" ? `${value} ${unit}` : value;
+  const [factor, shown] = shownUnit(unit);
+  const scaled = value * factor, size = Math.abs(scaled);
+  const text = Number.isInteger(scaled) ? String(scaled) : scaled.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2);
+  return shown ? `${text} ${shown}` : text;
+}
+
+export function day(iso: string): string {
+  const date = new Date(iso);
+  if (Number.isNaN(date.getTime())) return iso;
+  return date.toLocaleString(undefined, { year: "numeric", month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });
+}
+
+/// "thread-overload" -> "Thread overload"
+export function words(name: string): string {
+  const text = name.replace(/[-_]+/g, " ");
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+export const kKnotTitles: Record<string, string> = {
+  square: "Square knot", granny: "Granny knot", surgeons: "Surgeon's knot", triple: "Triple knot (1=1=1)", overhand: "Overhand knot",
+  "half-hitches": "Half hitches (slipped)", unknot: "No knot", other: "Another knot",
+};

@@ -1,0 +1,165 @@
+// The task as it runs: field in the middle, what to do on the left, forces on the right.
+import type { App, Page } from "../app";
+import { PointerInput } from "../input/pointer_input";
+import type { ServerMessage, TimedEvent } from "../messages";
+import type { LineState } from "../net/connection";
+import { fieldDiameter } from "../scene/optics";
+import { clear, h, setAttribute, setText } from "./dom";
+import { opticsBar } from "./field_view";
+import { microscopeKey, microscopeMouse } from "./microscope_keys";
+import { ForcePanel, HealthPanel, StepPanel, toolTitle, WarningList } from "./panels";
+import { quantity, words } from "./format";
+
+const kPanelsEvery = 60; // [ms]
+const kEventsShown = 5;
+
+export class LivePage implements Page {
+  readonly title = "Task";
+  readonly element = h("div", { class: "page live" });
+  private readonly view;
+  private readonly left = h("aside", { class: "left" });
+  private readonly right = h("aside", { class: "right" });
+  private readonly over = h("div", { class: "over" });
+  private readonly hand = h("output", { class: "hand", "aria-live": "polite" }, "");
+  private readonly events = h("ul", { class: "events", "aria-label": "What happened" });
+  private readonly warnings = new WarningList();
+  private readonly health = new HealthPanel();
+  private readonly pointer: PointerInput;
+  private readonly unhook: () => void;
+  private steps: StepPanel | null = null;
+  private forces: ForcePanel | null = null;
+  private lastPanels = 0;
+
+  constructor(private readonly app: App) {
+    const view = app.microscope();
+    this.view = view;
+    this.pointer = new PointerInput(view.surface, {
+      metresPerPixel: () => view.metresPerPixel,
+      fieldMetres: () => fieldDiameter(view.microscope.optics.magnification) / 1000,
+      tiltCosine: () => Math.cos(view.microscope.optics.tilt),
+    }, (message) => app.send(message));
+    this.pointer.onswitch = () => this.showHand();
+    this.unhook = microscopeMouse(view, () => !this.pointer.live);
+    this.warnings.onnew = (level) => app.sound.play(level);
+    this.element.append(this.left, h("div", { class: "middle" }, view.element, this.hand, this.warnings.element, this.over), this.right, opticsBar(view));
+    this.describe();
+    this.showSession();
+    view.start();
+  }
+
+  focus(): void { this.view.surface.focus({ preventScroll: true }); }
+
+  onmessage(message: ServerMessage): void {
+    switch (message.type) {
+      case "hello": case "session_state": this.showSession(); break;
+      case "scene": this.describe(); break;
+      case "frame": this.showFrame(); break;
+      case "event": this.addEvent(message.event); break;
+      case "result": this.showEnd(); break;
+      default: break;
+    }
+  }
+
+  online(state: LineState): void {
+    this.pointer.enabled = state === "open" && this.steering;
+    setAttribute(this.element, "data-line", state);
+  }
+
+  onkey(event: KeyboardEvent): boolean {
+    if (event.key === "Escape" && document.activeElement === this.view.surface) {
+      (this.left.querySelector("button") ?? this.element.querySelector("button"))?.focus();
+      return true;
+    }
+    return microscopeKey(this.view, event, this.pointer.hands.active, this.element);
+  }
+
+  dispose(): void {
+    this.pointer.dispose();
+    this.unhook();
+    this.view.stop();
+  }
+
+  private get steering(): boolean {
+    const session = this.app.session;
+    return session !== null && session.state === "running" && session.input === "pointer" && session.in_control;
+  }
+
+  private describe(): void {
+    const { scene } = this.app;
+    clear(this.left);
+    clear(this.right);
+    clear(this.over);
+    clear(this.events);
+    this.pointer.hands.hands.length = 0;
+    if (!scene) {
+      this.steps = this.forces = null;
+      this.over.append(h("p", { class: "loading", role: "status" }, "Loading the scene…"));
+      return;
+    }
+    this.steps = new StepPanel(scene.title);
+    this.forces = new ForcePanel(scene);
+    const end = h("button", { class: "end", onclick: () => { this.app.send({ type: "stop" }); } }, "End task");
+    const back = h("button", { class: "quietbutton", onclick: () => this.focus() }, "To the field");
+    this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), this.events), h("div", { class: "buttons" }, end, back));
+    this.right.append(this.forces.element, this.health.element);
+  }
+
+  private showSession(): void {
+    const { session } = this.app;
+    this.pointer.enabled = this.app.online && this.steering;
+    if (!this.steering) this.pointer.hands.hands.length = 0;
+    this.element.dataset.state = session?.state ?? "idle";
+    if (session?.state === "idle" && !this.app.result) {
+      this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", {}, "No task is running."), h("a", { class: "button", href: "#/" }, "Choose a task")));
+    }
+    if (session?.state === "replay" && this.app.replay) this.app.go(`#/replay/${encodeURIComponent(this.app.replay.session)}`);
+    const others = session !== null && session.state === "running" && !session.in_control;
+    this.element.classList.toggle("watching", others);
+    this.showHand();
+  }
+
+  private showFrame(): void {
+    const { frame } = this.app;
+    if (!frame) return;
+    if (this.steering && !this.pointer.hands.ready && this.app.scene) {
+      this.pointer.hands.adopt(frame.tools, this.app.scene.tools.map((tool) => tool.max_angle));
+      this.showHand();
+    }
+    const now = performance.now();
+    this.warnings.show(frame.task?.warnings ?? []);
+    if (now - this.lastPanels < kPanelsEvery) return;
+    this.lastPanels = now;
+    if (this.over.querySelector(".loading")) clear(this.over);
+    this.steps?.show(frame.task, frame.time);
+    this.forces?.show(frame, this.pointer.live ? this.pointer.hands.active : null);
+    this.health.show(frame);
+  }
+
+  private showHand(): void {
+    const { session, scene } = this.app;
+    let text = "";
+    if (session?.state === "running") {
+      if (!session.in_control) text = session.controller > 0 ? "Watching: another browser is in control" : "Watching";
+      else if (session.input === "demo") text = "Demonstration";
+      else if (session.input === "device") text = "Attached instruments";
+      else if (scene) text = `Active hand: ${toolTitle(scene.tools[this.pointer.hands.active]?.name ?? "")} (Tab changes)`;
+    }
+    setText(this.hand, text);
+  }
+
+  private addEvent(event: TimedEvent): void {
+    const value = event.unit !== "-" && event.value !== 0 ? ` ${quantity(event.value, event.unit)}` : "";
+    this.events.prepend(h("li", {}, h("span", { class: "when" }, `${event.time.toFixed(1)} s`), event.text || words(event.name) + value));
+    while (this.events.children.length > kEventsShown) this.events.lastElementChild!.remove();
+  }
+
+  private showEnd(): void {
+    const { result } = this.app;
+    if (!result) return;
+    this.pointer.enabled = false;
+    const link = h("a", { class: "button primary", href: "#/result" }, "Show the result");
+    this.over.replaceChildren(h("div", { class: "card endcard" },
+      h("p", { class: "big" }, result.finished ? "Task ended" : "Task stopped"), h("p", {}, `${result.score.total.toFixed(0)} of ${result.score.max_total.toFixed(0)} points`), link));
+    link.focus();
+  }
+}

@@ -1,0 +1,45 @@
+// Keys of the microscope, the same on the live page and in a replay.
+import type { FieldView } from "./field_view";
+
+/// True when the key was one of the microscope's.
+export function microscopeKey(view: FieldView, event: KeyboardEvent, activeTool: number, panels: HTMLElement): boolean {
+  if (event.ctrlKey || event.altKey || event.metaKey) return false;
+  switch (event.key) {
+    case "+": case "=": view.zoom(1); return true;
+    case "-": case "−": view.zoom(-1); return true;
+    case "[": view.focus(-1); return true;
+    case "]": view.focus(1); return true;
+    case "1": view.setStereo("mono"); return true;
+    case "2": view.setStereo("side-by-side"); return true;
+    case "3": view.setStereo("anaglyph"); return true;
+    case ",": view.setEyeDistance(view.microscope.optics.eyeDistance - 1); return true;
+    case ".": view.setEyeDistance(view.microscope.optics.eyeDistance + 1); return true;
+    case "o": case "O": view.focusOnTool(activeTool); return true;
+    case "g": case "G": view.toggleReticle(); return true;
+    case "h": case "H": panels.classList.toggle("bare"); return true;
+    case "0": view.reset(); return true;
+    default: return false;
+  }
+}
+
+/// Wheel and drag on the field where no hand is steered with the mouse. Returns what takes them off again.
+export function microscopeMouse(view: FieldView, free: () => boolean): () => void {
+  const wheel = (event: WheelEvent) => {
+    const notches = -event.deltaY / 100;
+    if (event.altKey) view.focus(notches);
+    else if (event.ctrlKey || free()) view.zoom(notches);
+    else return;
+    event.preventDefault();
+  };
+  const drag = (event: PointerEvent) => {
+    if (!free() || (event.buttons & 5) === 0) return;
+    const mm = view.metresPerPixel * 1000;
+    view.pan(-event.movementX * mm, event.movementY * mm);
+  };
+  view.surface.addEventListener("wheel", wheel, { passive: false });
+  view.surface.addEventListener("pointermove", drag);
+  return () => {
+    view.surface.removeEventListener("wheel", wheel);
+    view.surface.removeEventListener("pointermove", drag);
+  };
+}

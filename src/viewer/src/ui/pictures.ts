@@ -1,0 +1,124 @@
+// Pictures of tasks and knots, drawn from a description of the throws: one row of crossings for each throw.
+import { svg } from "./dom";
+
+/// A throw: how many times the two strands cross (3 for a single throw, 5 for a double one) and in which sense they turn.
+export interface Throw { crossings: 3 | 5 | 1; sense: 1 | -1 }
+
+type Point = [number, number, number]; // x, y, height above the paper
+
+export const kThrows: Record<string, Throw[]> = {
+  square: [{ crossings: 3, sense: 1 }, { crossings: 3, sense: -1 }],
+  granny: [{ crossings: 3, sense: 1 }, { crossings: 3, sense: 1 }],
+  surgeons: [{ crossings: 5, sense: 1 }, { crossings: 3, sense: -1 }],
+  triple: [{ crossings: 3, sense: 1 }, { crossings: 3, sense: -1 }, { crossings: 3, sense: 1 }],
+  overhand: [{ crossings: 3, sense: 1 }],
+  "half-hitches": [{ crossings: 1, sense: 1 }, { crossings: 3, sense: 1 }],
+};
+
+const kHalfWidth = 22, kHeight = 7.5, kSpacing = 27;
+
+/// The two strands of a knot from the post upwards: each a list of points. Paper coordinates, y downwards.
+export function strands(throws: Throw[], base: number): [Point[], Point[]] {
+  const left: Point[] = [[-11, base + 13, 0]], right: Point[] = [[11, base + 13, 0]];
+  let a = left, b = right; // a stands at the lower left of the next throw, b at the lower right
+  throws.forEach((one, row) => {
+    const y = base - row * kSpacing, n = one.crossings, steps = n * 8;
+    const forth: Point[] = [], back: Point[] = [];
+    for (let k = 0; k <= steps; ++k) {
+      const turn = (Math.PI * n * k) / steps, x = -kHalfWidth + (2 * kHalfWidth * k) / steps;
+      forth.push([x, y + kHeight * Math.cos(turn), one.sense * Math.sin(turn)]);
+      back.push([x, y - kHeight * Math.cos(turn), -one.sense * Math.sin(turn)]);
+    }
+    a.push([-kHalfWidth - 5, y + kHeight + 1, 0], ...forth, [kHalfWidth + 5, y - kHeight - 1, 0]);
+    b.push([kHalfWidth + 5, y + kHeight + 1, 0], ...back.reverse(), [-kHalfWidth - 5, y - kHeight - 1, 0]);
+    [a, b] = [b, a]; // the strand that came from the right now stands at the left
+  });
+  const top = base - (throws.length - 1) * kSpacing;
+  a.push([-30, top - 15, 0], [-43, top - 21, 0]);
+  b.push([30, top - 15, 0], [43, top - 21, 0]);
+  return [left, right];
+}
+
+/// Catmull-Rom through the points, `density` pieces each.
+function smoothed(points: Point[], density: number): Point[] {
+  const out: Point[] = [];
+  for (let i = 0; i + 1 < points.length; ++i) {
+    const p = [points[Math.max(0, i - 1)], points[i], points[i + 1], points[Math.min(points.length - 1, i + 2)]];
+    for (let k = 0; k < density; ++k) {
+      const t = k / density, t2 = t * t, t3 = t2 * t;
+      const w = [0.5 * (-t3 + 2 * t2 - t), 0.5 * (3 * t3 - 5 * t2 + 2), 0.5 * (-3 * t3 + 4 * t2 + t), 0.5 * (t3 - t2)];
+      out.push([0, 1, 2].map((axis) => w.reduce((sum, weight, j) => sum + weight * p[j][axis], 0)) as Point);
+    }
+  }
+  out.push(points[points.length - 1]);
+  return out;
+}
+
+/// Short pieces painted from the lowest to the highest, each with a dark rim: crossings come out right by themselves.
+function paint(lines: { points: Point[]; colour: string }[], width: number, rim: string): string {
+  const pieces: { height: number; path: string; colour: string }[] = [];
+  for (const { points, colour } of lines) {
+    const fine = smoothed(points, 2);
+    for (let i = 0; i + 1 < fine.length; i += 4) {
+      const part = fine.slice(i, i + 5);
+      const height = part.reduce((sum, p) => sum + p[2], 0) / part.length;
+      pieces.push({ height, colour, path: "M" + part.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L") });
+    }
+  }
+  pieces.sort((p, q) => p.height - q.height);
+  return pieces.map(({ path, colour }) =>
+    `<path d="${path}" fill="none" stroke="${rim}" stroke-width="${width + 2.6}"/>` +
+    `<path d="${path}" fill="none" stroke="${colour}" stroke-width="${width}" stroke-linecap="round" stroke-linejoin="round"/>`).join("");
+}
+
+let serial = 0;
+
+function field(content: string, label: string): SVGElement {
+  const id = `field${++serial}`;
+  return svg(`<svg viewBox="-60 -60 120 120" role="img" aria-label="${label}" class="picture">
+    <defs>
+      <radialGradient id="${id}"><stop offset="0" stop-color="#8fc0b8"/><stop offset=".8" stop-color="#5f9a96"/><stop offset="1" stop-color="#33615f"/></radialGradient>
+      <clipPath id="${id}c"><circle r="56"/></clipPath>
+      <linearGradient id="${id}m" x1="0" x2="0" y1="0" y2="1"><stop offset="0" stop-color="#eef2f5"/><stop offset=".5" stop-color="#9aa5b0"/><stop offset="1" stop-color="#5b6570"/></linearGradient>
+      <linearGradient id="${id}p" x1="0" x2="0" y1="0" y2="1"><stop offset="0" stop-color="#fff1de"/><stop offset="1" stop-color="#c9ab8c"/></linearGradient>
+    </defs>
+    <circle r="59" fill="#050808"/><circle r="56" fill="url(#${id})"/>
+    <g clip-path="url(#${id}c)">${content.replaceAll("#METAL", `url(#${id}m)`).replaceAll("#POST", `url(#${id}p)`)}</g>
+    <circle r="56" fill="none" stroke="#0b1414" stroke-width="3"/></svg>`);
+}
+
+/// The knot as a diagram above the post. `tools`: with the tips of two instruments pulling the tails.
+export function knotPicture(knot: string, label: string, tools: boolean): SVGElement {
+  const throws = kThrows[knot] ?? [];
+  const base = 12 + (throws.length - 2) * kSpacing * 0.5;
+  if (throws.length === 0) {
+    const loose = "M-50 -20C-20 10 -18 -34 0 -12S24 24 50 -14";
+    return field(`<path d="${loose}" fill="none" stroke="#12333b" stroke-width="4.5" stroke-linecap="round"/>`, label);
+  }
+  const [left, right] = strands(throws, base);
+  const post = `<ellipse cx="3" cy="${base + 31}" rx="24" ry="6" fill="#00000038"/>
+    <circle cy="${base + 17}" r="13.5" fill="#POST" stroke="#6d5a46" stroke-width=".8"/>`;
+  const round = `<path d="M-11 ${base + 13}C-17 ${base + 22} -12 ${base + 32.5} 0 ${base + 32.5}S17 ${base + 22} 11 ${base + 13}" fill="none" stroke="#0f2a3a" stroke-width="4.2" stroke-linecap="round"/>`;
+  const knotPaths = paint([{ points: left, colour: "#12324a" }, { points: right, colour: "#7a2b16" }], 4.2, "#8fc0b8");
+  const top = base - (throws.length - 1) * kSpacing - 21;
+  const jaws = tools ? `<g stroke="#2b333b" stroke-width=".6">
+    <path d="M-40 ${top - 2}L-64 ${top - 20}L-64 ${top - 12}L-41 ${top + 1}Z" fill="#METAL"/><path d="M-40 ${top + 3}L-64 ${top + 2}L-64 ${top - 7}L-41 ${top + 0}Z" fill="#METAL"/>
+    <path d="M40 ${top - 2}L64 ${top - 20}L64 ${top - 12}L41 ${top + 1}Z" fill="#METAL"/><path d="M40 ${top + 3}L64 ${top + 2}L64 ${top - 7}L41 ${top + 0}Z" fill="#METAL"/></g>` : "";
+  return field(post + round + knotPaths + jaws, label);
+}
+
+/// Picture of a task by the name that the trainer gives.
+export function taskPicture(name: string, title: string): SVGElement {
+  const knot = /^knot-(.+)$/.exec(name)?.[1];
+  if (knot && kThrows[knot]) return knotPicture(knot, title, true);
+  return knotPicture("", title, false);
+}
+
+/// Icons differ in outline as well as in colour.
+export const icon = {
+  info: () => svg(`<svg viewBox="0 0 24 24" class="icon" aria-hidden="true"><circle cx="12" cy="12" r="10" fill="none" stroke="currentColor" stroke-width="2"/><path d="M12 11v6M12 7v.5" stroke="currentColor" stroke-width="2.4" stroke-linecap="round"/></svg>`),
+  warn: () => svg(`<svg viewBox="0 0 24 24" class="icon" aria-hidden="true"><path d="M12 2.5 22.5 21h-21z" fill="none" stroke="currentColor" stroke-width="2" stroke-linejoin="round"/><path d="M12 9v6M12 17.6v.6" stroke="currentColor" stroke-width="2.4" stroke-linecap="round"/></svg>`),
+  danger: () => svg(`<svg viewBox="0 0 24 24" class="icon" aria-hidden="true"><path d="M7.6 1.5h8.8l6.1 6.1v8.8l-6.1 6.1H7.6l-6.1-6.1V7.6z" fill="currentColor"/><path d="M8 8l8 8M16 8l-8 8" stroke="#fff" stroke-width="2.6" stroke-linecap="round"/></svg>`),
+  pass: () => svg(`<svg viewBox="0 0 24 24" class="icon" aria-hidden="true"><circle cx="12" cy="12" r="10.5" fill="none" stroke="currentColor" stroke-width="2"/><path d="M6.5 12.5l4 4 7-8" fill="none" stroke="currentColor" stroke-width="2.6" stroke-linecap="round" stroke-linejoin="round"/></svg>`),
+  fail: () => svg(`<svg viewBox="0 0 24 24" class="icon" aria-hidden="true"><rect x="2" y="2" width="20" height="20" rx="3" fill="none" stroke="currentColor" stroke-width="2"/><path d="M7.5 7.5l9 9M16.5 7.5l-9 9" stroke="currentColor" stroke-width="2.6" stroke-linecap="round"/></svg>`),
+};

@@ -1,0 +1,174 @@
+// A recorded session seen again: the same field and bars, with a time line that can be dragged.
+import type { App, Page } from "../app";
+import type { ServerMessage, TimedEvent } from "../messages";
+import type { LineState } from "../net/connection";
+import { clear, h, setText } from "./dom";
+import { opticsBar } from "./field_view";
+import { clock, quantity, words } from "./format";
+import { microscopeKey, microscopeMouse } from "./microscope_keys";
+import { ForcePanel, StepPanel, WarningList } from "./panels";
+
+const kPanelsEvery = 60; // [ms]
+const kSeekEvery = 50; // [ms], while dragging
+
+export class ReplayPage implements Page {
+  readonly title = "Replay";
+  readonly element = h("div", { class: "page live replay" });
+  private readonly id: string;
+  private readonly view;
+  private readonly left = h("aside", { class: "left" });
+  private readonly right = h("aside", { class: "right" });
+  private readonly warnings = new WarningList();
+  private readonly over = h("div", { class: "over" });
+  private readonly play = h("button", { class: "primary play", onclick: () => this.toggle() }, "▶ Play");
+  private readonly scrub = h("input", { type: "range", min: 0, max: 1, step: 0.01, value: 0, "aria-label": "Time in the recording", class: "scrub" });
+  private readonly marks = h("div", { class: "marks", "aria-hidden": "true" });
+  private readonly clock = h("output", { class: "time" }, "");
+  private readonly unhook: () => void;
+  private steps: StepPanel | null = null;
+  private forces: ForcePanel | null = null;
+  private events: TimedEvent[] = [];
+  private lastPanels = 0;
+  private lastSeek = 0;
+  private dragging = false;
+  private wanted: number | null; // [s], where the address of the page asks to go
+  private opened = false;
+
+  constructor(private readonly app: App, argument: string) {
+    const [id, time] = argument.split("/");
+    this.id = id;
+    this.wanted = time !== undefined && Number.isFinite(Number(time)) ? Number(time) : null;
+    this.view = app.microscope();
+    this.unhook = microscopeMouse(this.view, () => true);
+    this.scrub.addEventListener("input", () => this.dragged());
+    this.scrub.addEventListener("change", () => { this.dragging = false; this.seek(Number(this.scrub.value)); });
+    const transport = h("div", { class: "transport", role: "group", "aria-label": "Replay" }, this.play, h("div", { class: "timeline" }, this.marks, this.scrub), this.clock);
+    this.element.append(this.left, h("div", { class: "middle" }, this.view.element, this.warnings.element, this.over), this.right, transport, opticsBar(this.view));
+    this.over.append(h("p", { class: "loading", role: "status" }, "Opening the recording…"));
+    if (app.online && app.hello) this.open();
+    this.view.start();
+  }
+
+  focus(): void { this.play.focus({ preventScroll: true }); }
+
+  onmessage(message: ServerMessage): void {
+    switch (message.type) {
+      case "hello": this.opened = false; this.open(); break;
+      case "scene": this.describe(); break;
+      case "replay_state": this.showState(); break;
+      case "result": this.events = message.events; this.describe(); break;
+      case "frame": this.showFrame(); break;
+      case "error": if (!this.forces) this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", {}, message.what), h("a", { class: "button", href: "#/sessions" }, "All sessions"))); break;
+      default: break;
+    }
+  }
+
+  online(state: LineState): void { this.element.dataset.line = state; }
+
+  onkey(event: KeyboardEvent): boolean {
+    const step = event.shiftKey ? 5 : 1, now = this.app.replay?.time ?? 0, end = this.app.replay?.duration ?? 0;
+    const onButton = document.activeElement instanceof HTMLButtonElement || document.activeElement instanceof HTMLAnchorElement;
+    switch (event.key) {
+      case " ": if (onButton) return false; this.toggle(); return true;
+      case "ArrowLeft": this.seek(now - step); return true;
+      case "ArrowRight": this.seek(now + step); return true;
+      case "Home": this.seek(0); return true;
+      case "End": this.seek(end); return true;
+      case "ArrowDown": return this.jump(this.events.find((one) => one.time > now + 0.02));
+      case "ArrowUp": return this.jump([...this.events].reverse().find((one) => one.time < now - 0.02));
+      default: return microscopeKey(this.view, event, 0, this.element);
+    }
+  }
+
+  dispose(): void {
+    this.unhook();
+    this.view.stop();
+    if (this.app.session?.state === "replay") this.app.send({ type: "stop" });
+    this.app.replay = null;
+  }
+
+  private open(): void {
+    if (this.opened) return;
+    this.opened = this.app.send({ type: "replay_open", session: this.id });
+  }
+
+  private toggle(): void {
+    const state = this.app.replay;
+    if (!state) return;
+    if (!state.playing && state.time >= state.duration - 0.01) this.seek(0);
+    this.app.send({ type: state.playing ? "pause" : "play" });
+  }
+
+  private seek(time: number): void {
+    const end = this.app.replay?.duration ?? 0;
+    const to = Math.min(end, Math.max(0, time));
+    if (this.app.replay) this.app.replay.time = to;
+    this.app.send({ type: "seek", time: to });
+    this.showTime(to, end);
+  }
+
+  private jump(event: TimedEvent | undefined): boolean {
+    if (event) this.seek(event.time);
+    return true;
+  }
+
+  private dragged(): void {
+    this.dragging = true;
+    const now = performance.now();
+    if (now - this.lastSeek < kSeekEvery) return;
+    this.lastSeek = now;
+    this.seek(Number(this.scrub.value));
+  }
+
+  private describe(): void {
+    const { scene } = this.app;
+    if (!scene) return;
+    clear(this.left);
+    clear(this.right);
+    this.steps = new StepPanel(scene.title);
+    this.forces = new ForcePanel(scene);
+    const list = this.events.map((event) => h("li", {}, h("button", { class: "eventbutton", onclick: () => this.seek(event.time) },
+      h("span", { class: "when" }, `${event.time.toFixed(1)} s`), h("span", {}, event.text || words(event.name)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit)))));
+    this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), h("ul", { class: "events long" }, ...list)));
+    this.right.append(this.forces.element, h("a", { class: "button", href: `#/result/${encodeURIComponent(this.id)}` }, "Score and reasons"));
+    this.showMarks();
+  }
+
+  private showState(): void {
+    const state = this.app.replay;
+    if (!state) return;
+    clear(this.over);
+    this.scrub.max = String(state.duration);
+    setText(this.play, state.playing ? "❚❚ Pause" : "▶ Play");
+    this.showTime(state.time, state.duration);
+    if (this.marks.childElementCount === 0) this.showMarks();
+    if (this.wanted !== null && state.duration > 0) {
+      const to = this.wanted;
+      this.wanted = null;
+      this.seek(to);
+    }
+  }
+
+  private showTime(time: number, duration: number): void {
+    if (!this.dragging) this.scrub.value = String(time);
+    this.scrub.setAttribute("aria-valuetext", `${time.toFixed(1)} of ${duration.toFixed(1)} seconds`);
+    setText(this.clock, `${clock(time)} / ${clock(duration)}`);
+  }
+
+  private showMarks(): void {
+    const duration = this.app.replay?.duration ?? 0;
+    clear(this.marks);
+    if (duration <= 0) return;
+    for (const event of this.events) this.marks.append(h("span", { style: `left:${((100 * event.time) / duration).toFixed(2)}%`, title: `${event.time.toFixed(1)} s ${event.text || words(event.name)}` }));
+  }
+
+  private showFrame(): void {
+    const { frame } = this.app;
+    const now = performance.now();
+    if (!frame || now - this.lastPanels < kPanelsEvery) return;
+    this.lastPanels = now;
+    this.warnings.show(frame.task?.warnings ?? []);
+    this.steps?.show(frame.task, frame.time);
+    this.forces?.show(frame, null);
+  }
+}

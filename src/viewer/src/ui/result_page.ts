@@ -1,0 +1,116 @@
+// What the trainer made of a session: score with reasons, knot, curves, paths, events. Nothing is computed here.
+import type { App, Page } from "../app";
+import type { Result, ServerMessage } from "../messages";
+import { session as fetchSession } from "../net/api";
+import { h } from "./dom";
+import { clock, kKnotTitles, milliNewton, quantity, words } from "./format";
+import { PathPlot } from "./path_plot";
+import { icon, knotPicture } from "./pictures";
+import { chartsOf, drawChart } from "./plots";
+
+export class ResultPage implements Page {
+  readonly title = "Result";
+  readonly element = h("div", { class: "page result" });
+  private cleanup: (() => void)[] = [];
+  private shown: Result | null = null;
+
+  constructor(private readonly app: App, private readonly id: string) {
+    if (id) void this.load();
+    else if (app.result) this.show(app.result);
+    else this.element.append(h("h1", {}, "Result"), h("p", {}, "There is no result yet."), h("a", { class: "button", href: "#/" }, "Choose a task"));
+  }
+
+  onmessage(message: ServerMessage): void {
+    if (message.type === "result" && !this.id && message !== this.shown) this.show(message);
+  }
+
+  dispose(): void { for (const one of this.cleanup) one(); this.cleanup = []; }
+
+  private async load(): Promise<void> {
+    this.element.replaceChildren(h("p", { role: "status" }, "Loading…"));
+    try {
+      const { session, result } = await fetchSession(this.id);
+      if (result) this.show(result);
+      else this.element.replaceChildren(h("h1", {}, session.title), h("p", {}, "This session was not scored."), this.replayLink(this.id));
+    } catch (error) {
+      this.element.replaceChildren(h("h1", {}, "Result"), h("p", { role: "alert" }, `The session cannot be shown: ${(error as Error).message}.`), h("a", { class: "button", href: "#/sessions" }, "All sessions"));
+    }
+  }
+
+  private replayLink(id: string): HTMLElement {
+    return h("a", { class: "button", href: `#/replay/${encodeURIComponent(id)}` }, "Replay");
+  }
+
+  private show(result: Result): void {
+    this.dispose();
+    this.shown = result;
+    const id = this.id || result.session;
+    const share = result.score.max_total > 0 ? result.score.total / result.score.max_total : 0;
+    const verdict = h("div", { class: `verdict ${result.passed ? "pass" : "fail"}` }, result.passed ? icon.pass() : icon.fail(),
+      h("span", {}, result.passed ? "Passed" : result.finished ? "Not passed" : "Not finished"));
+    const total = h("div", { class: "total" }, h("span", { class: "points" }, result.score.total.toFixed(0)), h("span", { class: "of" }, `of ${result.score.max_total.toFixed(0)} points`),
+      h("div", { class: "track", "aria-hidden": "true" }, h("div", { class: "fill", style: `transform:scaleX(${share.toFixed(3)})` })));
+    this.element.replaceChildren(
+      h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${clock(result.seconds)}`)), verdict, total,
+        h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
+      h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
+      this.curves(result));
+  }
+
+  private scoreTable(result: Result): HTMLElement {
+    const rows = result.score.items.map((item) => {
+      const share = item.max_points > 0 ? Math.max(0, Math.min(1, item.points / item.max_points)) : 0;
+      return h("tr", {}, h("th", { scope: "row" }, words(item.name)), h("td", { class: "number" }, quantity(item.value, item.unit)),
+        h("td", { class: "number" }, h("strong", {}, `${+item.points.toFixed(1)}`), ` / ${+item.max_points.toFixed(1)}`,
+          h("div", { class: "track", "aria-hidden": "true" }, h("div", { class: "fill", style: `transform:scaleX(${share.toFixed(3)})` }))),
+        h("td", {}, item.why));
+    });
+    return h("section", { class: "panel score" }, h("h2", {}, "Score and reasons"),
+      h("table", {}, h("thead", {}, h("tr", {}, ...["Measure", "Measured", "Points", "Why"].map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...rows)));
+  }
+
+  private knotCard(result: Result): HTMLElement | null {
+    const { knot } = result;
+    if (!knot) return null;
+    const title = kKnotTitles[knot.class] ?? words(knot.class);
+    const pull = knot.security_newton === null ? "Not pulled." : knot.held ? `Held: pulled up to ${milliNewton(knot.security_newton)} without slipping.` : `Slipped at ${milliNewton(knot.security_newton)}.`;
+    return h("section", { class: "panel knot" }, h("h2", {}, "Knot"), knotPicture(knot.class, title, false), h("p", { class: "big" }, title),
+      h("p", { class: knot.held ? "" : "alarm" }, knot.held ? icon.pass() : icon.warn(), " ", pull));
+  }
+
+  private eventCard(result: Result, id: string | null): HTMLElement {
+    const rows = result.events.map((event) => h("li", {},
+      id ? h("a", { href: `#/replay/${encodeURIComponent(id)}/${event.time.toFixed(2)}`, title: "Show in the replay" }, `${event.time.toFixed(1)} s`) : h("span", { class: "when" }, `${event.time.toFixed(1)} s`),
+      h("span", {}, event.text || words(event.name)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit))));
+    return h("section", { class: "panel eventlist" }, h("h2", {}, "What happened"), rows.length > 0 ? h("ul", { class: "events" }, ...rows) : h("p", { class: "quiet" }, "Nothing was noted."));
+  }
+
+  private curves(result: Result): HTMLElement {
+    const section = h("div", { class: "curves" });
+    const charts = chartsOf(result.series.filter((one) => one.time.length > 1));
+    for (const data of charts) {
+      const holder = h("div", { class: "chart" });
+      section.append(h("section", { class: "panel" }, h("h2", {}, this.chartTitle(data.titles, data.unit)), holder));
+      requestAnimationFrame(() => {
+        if (this.shown !== result || !holder.isConnected) return;
+        this.cleanup.push(drawChart(holder, data, result.events, (time) => this.pick(result, time)));
+      });
+    }
+    if (result.paths.length > 0) {
+      const plot = new PathPlot(result.paths);
+      this.cleanup.push(() => plot.dispose());
+      section.append(h("section", { class: "panel" }, h("h2", {}, "Paths of the tips"), plot.element));
+    }
+    return section;
+  }
+
+  private chartTitle(titles: string[], unit: string): string {
+    const known: Record<string, string> = { mN: "Forces", "mm/s": "Speed", mm: "Lengths", "°": "Angles" };
+    return `${known[unit] ?? (titles.length === 1 ? titles[0] : "Other curves")}${unit ? ` (${unit})` : ""}`;
+  }
+
+  private pick(result: Result, time: number): void {
+    const id = this.id || result.session;
+    if (id) this.app.go(`#/replay/${encodeURIComponent(id)}/${time.toFixed(2)}`);
+  }
+}

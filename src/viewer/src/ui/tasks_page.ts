@@ -1,0 +1,92 @@
+// First page: the tasks with their pictures, and how to start one.
+import type { App, Page } from "../app";
+import type { InputKind, ServerMessage, TaskInfo } from "../messages";
+import { clear, h, setText } from "./dom";
+import { taskPicture } from "./pictures";
+
+const kInputs: Record<InputKind, [string, string]> = {
+  pointer: ["Mouse, keyboard or gamepad", "You move both instruments from this browser."],
+  demo: ["Demonstration", "Watch how it is done. Nothing is scored in your name."],
+  device: ["Attached instruments", "The sensor forceps on this trainer."],
+};
+
+export class TasksPage implements Page {
+  readonly title = "Tasks";
+  readonly element = h("div", { class: "page tasks" });
+  private readonly cards = h("ul", { class: "cards" });
+  private readonly running = h("div", { class: "running" });
+  private readonly dialog = h("dialog", { class: "start", "aria-labelledby": "start-title" });
+
+  constructor(private readonly app: App) {
+    this.element.append(h("h1", {}, "Choose a task"), this.running, this.cards, this.dialog);
+    this.showTasks();
+    this.showRunning();
+  }
+
+  onmessage(message: ServerMessage): void {
+    if (message.type === "hello") this.showTasks();
+    if (message.type === "session_state") this.showRunning();
+  }
+
+  private showTasks(): void {
+    clear(this.cards);
+    const tasks = this.app.hello?.tasks;
+    if (!tasks) { this.cards.append(h("li", { class: "quiet" }, "Waiting for the trainer…")); return; }
+    for (const task of tasks) {
+      const button = h("button", { class: "card", "data-task": task.name, onclick: () => this.open(task) },
+        taskPicture(task.picture, task.title), h("span", { class: "cardtitle" }, task.title), h("span", { class: "summary" }, task.summary),
+        task.demonstration ? h("span", { class: "tag" }, "demonstration only") : null);
+      this.cards.append(h("li", {}, button));
+    }
+  }
+
+  private showRunning(): void {
+    clear(this.running);
+    const session = this.app.session;
+    if (!session || session.state === "idle" || session.state === "ended") return;
+    const task = this.app.hello?.tasks.find((one) => one.name === session.task);
+    const what = session.state === "replay" ? "A replay is open" : `Running now: ${task?.title ?? session.task}`;
+    const who = session.in_control ? "" : session.controller > 0 ? " (controlled from another browser)" : "";
+    this.running.append(h("span", {}, what + who), h("a", { class: "button", href: "#/live" }, session.in_control ? "Continue" : "Watch"));
+  }
+
+  private open(task: TaskInfo): void {
+    const { app, dialog } = this;
+    const offered = app.hello?.inputs ?? [];
+    const allowed = offered.filter((input) => !task.demonstration || input === "demo");
+    const choices = (Object.keys(kInputs) as InputKind[]).map((input) => {
+      const usable = allowed.includes(input);
+      const radio = h("input", { type: "radio", name: "input", value: input, disabled: !usable, checked: usable && input === allowed[0] });
+      return h("label", { class: usable ? "choice" : "choice off" }, radio, h("span", {}, h("strong", {}, kInputs[input][0]), h("br"),
+        usable ? kInputs[input][1] : task.demonstration ? "This task is shown only." : "Nothing of this kind is attached."));
+    });
+    const code = h("input", { type: "text", maxlength: 32, pattern: "[A-Za-z0-9_\\-]*", autocomplete: "off", placeholder: "e.g. A17" });
+    const others = app.session !== null && app.session.controller > 0 && !app.session.in_control;
+    const over = h("input", { type: "checkbox", name: "take_over" });
+    const trouble = h("p", { class: "trouble", role: "alert" }, "");
+    const form = h("form", { method: "dialog", onsubmit: (event: Event) => {
+      event.preventDefault();
+      const input = (form.querySelector("input[name=input]:checked") as HTMLInputElement | null)?.value as InputKind | undefined;
+      if (!input) { setText(trouble, "Choose how the instruments are moved."); return; }
+      if (!code.checkValidity()) { setText(trouble, "The code may hold letters, digits, - and _ only."); return; }
+      const sent = app.send({ type: "start", task: task.name, input, ...(code.value ? { code: code.value } : {}), ...(others ? { take_over: over.checked } : {}) });
+      if (!sent) { setText(trouble, "No connection to the trainer. Try again in a moment."); return; }
+      app.result = null;
+      app.scene = null;
+      dialog.close();
+      app.go("#/live");
+    } },
+      h("fieldset", {}, h("legend", {}, "Who moves the instruments?"), ...choices),
+      h("label", { class: "line-input" }, "Trainee code (no name; may stay empty)", code),
+      others ? h("label", { class: "choice" }, over, h("span", {}, h("strong", {}, "Take over control"), h("br"), "Another browser is in control now; its task ends.")) : null,
+      trouble,
+      h("div", { class: "buttons" }, h("button", { type: "button", class: "quietbutton", onclick: () => dialog.close() }, "Cancel"),
+        h("button", { type: "submit", class: "primary" }, "Start")));
+    dialog.replaceChildren(h("div", { class: "starthead" }, taskPicture(task.picture, task.title),
+      h("div", {}, h("h1", { id: "start-title" }, task.title), h("p", {}, task.summary))), form);
+    dialog.showModal();
+    (dialog.querySelector("input[name=input]:checked") as HTMLElement | null)?.focus();
+  }
+
+  dispose(): void { if (this.dialog.open) this.dialog.close(); }
+}
