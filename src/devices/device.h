@@ -53,6 +53,8 @@ class Device {
   /// arrived by scene time `now_us` [us since the session started].
   virtual void poll(std::int64_t now_us, std::vector<DeviceSample>& out) noexcept = 0;
   virtual DeviceHealth health() const noexcept = 0;
+  /// [us], how long a sample counts as the present when no newer one comes.
+  virtual std::int64_t stale_after_us() const noexcept { return 100'000; }
 };
 
 inline constexpr std::size_t kMaxSamplesPerPoll = 256;
