@@ -319,23 +319,23 @@ std::string unit_text(const Dimension& dimension) {
   return above + below;
 }
 
-std::string format_quantity(double si_value, std::string_view unit, int digits) {
-  if (unit == "degC") return number_text(si_value - 273.15, digits) + " degC";
-  const std::string number = number_text(si_value / unit_scale(unit), digits);
+std::string format_quantity(double value, std::string_view unit, int digits) {
+  if (unit == "degC") return number_text(value - 273.15, digits) + " degC";
+  const std::string number = number_text(value / unit_scale(unit), digits);
   return unit == "-" || unit.empty() ? number : number + " " + std::string(unit);
 }
 
-std::string format_prefixed(double si_value, std::string_view unit, int digits) {
+std::string format_prefixed(double value, std::string_view unit, int digits) {
   constexpr std::string_view kThousands[] = {"a", "f", "p", "n", "u", "m", "", "k", "M", "G", "T", "P", "E"};
   constexpr int kNone = 6;
   int step = 0;
-  if (si_value != 0.0 && std::isfinite(si_value)) {
+  if (value != 0.0 && std::isfinite(value)) {
     // The rounding to `digits` comes first: 999.99 um with 4 digits is 1 mm.
-    const double rounded = std::strtod(number_text(std::abs(si_value), digits).c_str(), nullptr);
+    const double rounded = std::strtod(number_text(std::abs(value), digits).c_str(), nullptr);
     step = static_cast<int>(std::floor(std::log10(rounded) / 3.0 + 1e-12));
     step = std::min(std::max(step, -kNone), kNone);
   }
-  const double shown = si_value / std::pow(10.0, 3 * step);
+  const double shown = value / std::pow(10.0, 3 * step);
   return number_text(shown, digits) + " " + std::string(kThousands[step + kNone]) + std::string(unit);
 }
 

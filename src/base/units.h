@@ -35,10 +35,10 @@ double unit_scale(std::string_view unit);
 std::string unit_text(const Dimension& dimension);
 
 /// Shortest text with `digits` significant digits in the unit given: format_quantity(3.5e-4, "mm") -> "0.35 mm".
-std::string format_quantity(double si_value, std::string_view unit, int digits = 4);
+std::string format_quantity(double value, std::string_view unit, int digits = 4);
 
 /// With the SI prefix that leaves 1 to 3 digits before the point: format_prefixed(3.5e-4, "m") -> "350 um".
 /// `unit` is a single SI symbol of power one without prefix ("m", "N", "Pa", "s").
-std::string format_prefixed(double si_value, std::string_view unit, int digits = 4);
+std::string format_prefixed(double value, std::string_view unit, int digits = 4);
 
 }  // namespace filum

@@ -34,8 +34,9 @@ struct StoreProblem {
 
 class Store {
  public:
-  /// Opens or creates. Throws InputError when the folder cannot be made or written, the index is damaged, or it was made by a
-  /// newer program. Not thread-safe: one thread owns a Store.
+  /// Opens or creates. A damaged index is set aside, built anew from the recordings, and reported by check(). Throws
+  /// InputError when the folder cannot be made or written or the index was made by a newer program.
+  /// Not thread-safe: one thread owns a Store.
   explicit Store(const std::string& folder, const std::string& index_connection = "");
   ~Store();
   Store(Store&&) noexcept;

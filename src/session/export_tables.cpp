@@ -1,0 +1,120 @@
+// Recordings as tables: which columns there are, their units and their meaning.
+
+#include <cinttypes>
+#include <cstdio>
+#include <limits>
+
+#include "session/table_builder.h"
+
+namespace filum {
+namespace {
+
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+std::string hex(std::uint64_t value) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016" PRIx64, value);
+  return text;
+}
+
+Table inputs_table(const RecordingReader& recording) {
+  const RecordingMeta& meta = recording.meta();
+  TableBuilder table("inputs", step_rate(meta), "what each step of the simulation was driven by");
+  RecordCursor<StepRecord> cursor = recording.steps();
+  StepRecord record;
+  while (cursor.next(record)) {
+    table.new_row();
+    table.add_integer("step", "count", "step number", static_cast<std::int64_t>(record.step));
+    table.add("time", "s", "scene time at the end of the step", static_cast<double>(record.step) * meta.dt);
+    table.add_integer("host_time", "us", "steady clock of the host when the step began", record.host_time_us);
+    table.add_integer("compute_time", "us", "how long the step took", record.compute_us);
+    for (int i = 0; i < meta.n_tools; ++i) {
+      const ToolInput& tool = record.inputs.tools[static_cast<std::size_t>(i)];
+      const std::string prefix = "tool" + std::to_string(i) + "_";
+      table.add_integer(prefix + "valid", "-", "1 while a live device moves the tool", tool.valid ? 1 : 0);
+      table.add_vector(prefix + "p", "m", "commanded position of the jaw tip, world frame", tool.X_WD.p);
+      table.add_quaternion(prefix + "q", "commanded orientation of the tool, world frame", tool.X_WD.q);
+      table.add(prefix + "grip_angle", "rad", "commanded opening of the jaws", tool.grip_angle);
+      table.add(prefix + "grip_force", "N", "measured squeeze; empty where not measured",
+                tool.has_grip_force ? tool.grip_force : kAbsent);
+      table.add_integer(prefix + "buttons", "-", "bit set: 1 clutch, 2 cut, 4 next", tool.buttons);
+    }
+    table.add_text("state_hash", "-", "XXH3-64 of the whole state after the step, hexadecimal", hex(record.state_hash));
+  }
+  return table.take();
+}
+
+Table samples_table(const RecordingReader& recording) {
+  TableBuilder table("samples", 0.0, "raw readings of the devices as they arrived; nothing is filled in");
+  RecordCursor<SampleRecord> cursor = recording.samples();
+  SampleRecord record;
+  while (cursor.next(record)) {
+    table.new_row();
+    const Vec3 p = record.has_pose ? record.X_WD.p : Vec3::Constant(kAbsent);
+    const Quat q = record.has_pose ? record.X_WD.q : Quat(kAbsent, kAbsent, kAbsent, kAbsent);
+    table.add_integer("tool", "-", "index of the tool", record.tool);
+    table.add_integer("host_time", "us", "steady clock of the host at arrival", record.host_time_us);
+    table.add_integer("device_time", "us", "clock of the device, unwrapped", record.device_time_us);
+    table.add_integer("sequence", "count", "sequence number; a gap is a loss", record.sequence);
+    table.add_vector("p", "m", "position of the handle, world frame; empty where not measured", p);
+    table.add_quaternion("q", "orientation of the handle, world frame; empty where not measured", q);
+    table.add("grip_angle", "rad", "opening of the jaws; empty where not measured",
+              record.has_grip_angle ? record.grip_angle : kAbsent);
+    table.add("grip_force", "N", "squeeze at the pads; empty where not measured",
+              record.has_grip_force ? record.grip_force : kAbsent);
+    table.add_integer("raw_angle", "count", "converter's reading of the grip angle", record.raw_angle);
+    table.add_integer("raw_force", "count", "converter's reading of the grip force", record.raw_force);
+    table.add_integer("buttons", "-", "bit set: 1 clutch, 2 cut, 4 next", record.buttons);
+  }
+  return table.take();
+}
+
+Table events_table(const RecordingReader& recording) {
+  TableBuilder table("events", 0.0, "what happened, in the order it was noticed");
+  RecordCursor<EventRecord> cursor = recording.events();
+  EventRecord record;
+  while (cursor.next(record)) {
+    table.new_row();
+    table.add_integer("step", "count", "step number", static_cast<std::int64_t>(record.step));
+    table.add("time", "s", "scene time", record.time);
+    table.add_text("name", "-", "kind of event", std::string(record.name.view()));
+    table.add_integer("tool", "-", "index of the tool, -1 none", record.tool);
+    table.add("value", "see unit", "what the event measured", record.value);
+    table.add_text("unit", "-", "unit of value", std::string(record.unit.view()));
+  }
+  return table.take();
+}
+
+Table array_hashes_table(const RecordingReader& recording) {
+  TableBuilder table("array_hashes", 0.0, "hash of each array of the state, taken every so many steps");
+  RecordCursor<ArrayHashRecord> cursor = recording.array_hashes();
+  ArrayHashRecord record;
+  while (cursor.next(record)) {
+    table.new_row();
+    table.add_integer("step", "count", "step number", static_cast<std::int64_t>(record.step));
+    table.add_text("array", "-", "name of the array", std::string(record.name.view()));
+    table.add_text("hash", "-", "XXH3-64, hexadecimal", hex(record.hash));
+  }
+  return table.take();
+}
+
+Table score_table(const RecordingReader& recording) {
+  TableBuilder table("score", 0.0, "result of the task as it was given at the time");
+  if (const auto& score = recording.score()) {
+    table.new_row();
+    table.add_integer("passed", "-", "1 if the task was passed", score->passed ? 1 : 0);
+    table.add("total", "points", "sum of the points", score->total);
+    table.add("seconds", "s", "scene time of the task", score->seconds);
+    table.add_text("json", "-", "every item with value, unit, points and reason, as JSON", score->json);
+  }
+  return table.take();
+}
+
+}  // namespace
+
+std::vector<Table> recorded_tables(const RecordingReader& recording) {
+  return {inputs_table(recording), samples_table(recording), events_table(recording), array_hashes_table(recording),
+          score_table(recording)};
+}
+
+}  // namespace filum

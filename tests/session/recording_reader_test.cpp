@@ -1,0 +1,202 @@
+#include "session/recording_reader.h"
+
+#include <gtest/gtest.h>
+#include <soci/sqlite3/soci-sqlite3.h>
+
+#include <fstream>
+#include <thread>
+
+#include "base/error.h"
+#include "base/rng.h"
+#include "session/database.h"
+#include "session/recorder.h"
+#include "tests/session/synthetic.h"
+
+namespace filum {
+namespace {
+
+using synthetic::Folder;
+
+std::string bytes_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+void write_bytes(const std::string& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+/// Everything in a recording as one hash; throws InputError when any of it is damaged.
+std::uint64_t read_whole(const std::string& file) {
+  const RecordingReader recording(file);
+  std::uint64_t hash = recording.finished() ? 1 : 0;
+  StepRecord step;
+  SampleRecord sample;
+  EventRecord event;
+  ArrayHashRecord array_hash;
+  std::vector<char> bytes;
+  for (auto cursor = recording.steps(); cursor.next(step);) {
+    pack(std::span<const StepRecord>(&step, 1), recording.meta().n_tools, bytes);
+    hash = hash_bytes(bytes.data(), bytes.size(), hash);
+  }
+  for (auto cursor = recording.samples(); cursor.next(sample);) {
+    pack(std::span<const SampleRecord>(&sample, 1), bytes);
+    hash = hash_bytes(bytes.data(), bytes.size(), hash);
+  }
+  for (auto cursor = recording.events(); cursor.next(event);) {
+    pack(std::span<const EventRecord>(&event, 1), bytes);
+    hash = hash_bytes(bytes.data(), bytes.size(), hash);
+  }
+  for (auto cursor = recording.array_hashes(); cursor.next(array_hash);) {
+    pack(std::span<const ArrayHashRecord>(&array_hash, 1), bytes);
+    hash = hash_bytes(bytes.data(), bytes.size(), hash);
+  }
+  for (const SourceFile& source : recording.sources()) hash = hash_text(source.path + source.text, hash);
+  if (const auto& score = recording.score()) hash = hash_text(score->json, hash);
+  return hash_text(recording.meta().task + recording.meta().participant + recording.meta().started_utc, hash);
+}
+
+TEST(RecordingReader, CursorsAreIndependent) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 600);
+  const RecordingReader recording(folder.file("a"));
+  auto first = recording.steps();
+  auto second = recording.steps();
+  StepRecord a;
+  StepRecord b;
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(first.next(a));
+  ASSERT_TRUE(second.next(b));
+  EXPECT_EQ(a.step, 300u);
+  EXPECT_EQ(b.step, 1u);
+}
+
+TEST(RecordingReader, RefusesWhatIsNoRecording) {
+  const Folder folder;
+  EXPECT_THROW(RecordingReader(folder.file("none")), InputError);
+  EXPECT_THROW(RecordingReader(folder.path().string()), InputError);
+  write_bytes(folder.file("text"), "not a recording at all\n");
+  EXPECT_THROW(RecordingReader(folder.file("text")), InputError);
+  write_bytes(folder.file("empty"), "");
+  EXPECT_THROW(RecordingReader(folder.file("empty")), InputError);
+  {
+    soci::session sql(soci::sqlite3, database::connection_string(folder.file("foreign"), false));
+    sql << "CREATE TABLE texts (a INTEGER)";
+  }
+  EXPECT_THROW(RecordingReader(folder.file("foreign")), InputError);
+}
+
+TEST(RecordingReader, SaysWhenAFileIsFromANewerProgram) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 10);
+  {
+    soci::session sql(soci::sqlite3, database::connection_string(folder.file("a"), false));
+    sql << "PRAGMA user_version = 3";
+  }
+  try {
+    RecordingReader recording(folder.file("a"));
+    FAIL() << "a newer format was taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("format: found 3, made by a newer Filum, expected a format up to 1"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(RecordingReader, EveryTruncationIsAnInputError) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 300);
+  const std::string whole = bytes_of(folder.file("a"));
+  for (std::size_t size = 0; size < whole.size(); size += 509) {
+    write_bytes(folder.file("cut"), whole.substr(0, size));
+    EXPECT_THROW(read_whole(folder.file("cut")), InputError) << size << " of " << whole.size();
+  }
+}
+
+TEST(RecordingReader, AFlippedBitIsFoundOrDoesNotMatter) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 300);
+  const std::uint64_t right = read_whole(folder.file("a"));
+  const std::string whole = bytes_of(folder.file("a"));
+  Rng rng(5);
+  int found = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::string changed = whole;
+    const std::size_t at = rng.below(whole.size());
+    changed[at] = static_cast<char>(changed[at] ^ (1 << rng.below(8)));
+    write_bytes(folder.file("flipped"), changed);
+    try {
+      EXPECT_EQ(read_whole(folder.file("flipped")), right) << "byte " << at << " changed the content unnoticed";
+    } catch (const InputError&) {
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 200);  // most of the file is records
+}
+
+TEST(RecordingReader, AMissingBlockIsFound) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 1000);
+  {
+    soci::session sql(soci::sqlite3, database::connection_string(folder.file("a"), false));
+    sql << "DELETE FROM steps WHERE id = 2";
+  }
+  EXPECT_THROW(read_whole(folder.file("a")), InputError);
+}
+
+TEST(RecordingReader, ACrashedRecordingInAReadOnlyFolderIsRead) {
+  const Folder folder;
+  const std::string locked = folder.file("locked");
+  std::filesystem::create_directory(locked);
+  std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
+  {
+    RecorderOptions options = synthetic::options(folder.file("live"));
+    Recorder recorder(options);
+    for (std::uint64_t i = 1; i <= 100; ++i) recorder.record_step(synthetic::step(i));
+    while (recorder.status().steps_stored < 100) std::this_thread::yield();
+    // As after a crash: the file and its journal, without the closing that folds them together.
+    std::filesystem::copy_file(folder.file("live"), locked + "/a");
+    std::filesystem::copy_file(folder.file("live-wal"), locked + "/a-wal");
+  }
+  std::filesystem::permissions(locked + "/a", std::filesystem::perms(0444));
+  std::filesystem::permissions(locked + "/a-wal", std::filesystem::perms(0444));
+  std::filesystem::permissions(locked, std::filesystem::perms(0555));
+  const synthetic::OrdinaryUser user;
+  ASSERT_TRUE(user.is());
+  const RecordingReader recording(locked + "/a");
+  auto cursor = recording.steps();
+  StepRecord record;
+  int n = 0;
+  while (cursor.next(record)) ++n;
+  EXPECT_EQ(n, 100);
+}
+
+TEST(RecordingReader, SourcesAreWrittenBelowTheFolderOnly) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 3);
+  RecordingReader(folder.file("a")).write_sources(folder.file("out"));
+  EXPECT_EQ(bytes_of(folder.file("out/models/suture/test.yaml")), "diameter: 25 um\n");
+  RecorderOptions options = synthetic::options(folder.file("b"));
+  options.sources = {{"../escaped.yaml", "x: 1\n"}};
+  Recorder(options).close();
+  EXPECT_THROW(RecordingReader(folder.file("b")).write_sources(folder.file("out")), InputError);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("escaped.yaml")));
+}
+
+TEST(RecordingReader, SourcesOfAProjectAreFoundByPath) {
+  const Folder folder;
+  std::filesystem::create_directories(folder.path() / "models/suture");
+  std::filesystem::create_directories(folder.path() / "curricula");
+  write_bytes(folder.file("models/suture/b.yaml"), "b: 1\n");
+  write_bytes(folder.file("models/a.yaml"), "a: 1\n");
+  write_bytes(folder.file("models/mesh.bin"), "x");
+  write_bytes(folder.file("curricula/c.yaml"), "c: 1\n");
+  const std::vector<SourceFile> sources = read_sources(folder.path().string());
+  ASSERT_EQ(sources.size(), 3u);
+  EXPECT_EQ(sources[0].path, "curricula/c.yaml");
+  EXPECT_EQ(sources[1].path, "models/a.yaml");
+  EXPECT_EQ(sources[2].path, "models/suture/b.yaml");
+  EXPECT_EQ(sources[2].text, "b: 1\n");
+}
+
+}  // namespace
+}  // namespace filum
