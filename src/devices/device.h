@@ -24,7 +24,7 @@ struct DeviceSample {
   bool has_grip_angle = false;
   bool has_grip_force = false;
   Pose X_WD;                        // pose of the handle in the scene's world frame W
-  double grip_angle = 0.0;          // [rad], opening angle between the jaws, 0 = closed
+  double grip_angle = 0.0;          // [rad], opening between the jaws; 0 closed, below 0 squeezed beyond closure, below 0 = squeezed
   double grip_force = 0.0;          // [N], measured at the pads, >= 0
   std::int32_t raw_angle = 0;       // [count], as sent; 0 where there is no converter
   std::int32_t raw_force = 0;       // [count]

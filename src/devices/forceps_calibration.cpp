@@ -49,7 +49,7 @@ ForcepsCalibration ForcepsCalibration::parse(const std::string& text, const std:
 }
 
 double ForcepsCalibration::angle(std::uint16_t count) const noexcept {
-  return std::clamp(angle_gain * (count - angle_zero), 0.0, angle_limit);
+  return std::clamp(angle_gain * (count - angle_zero), -angle_limit, angle_limit);
 }
 
 double ForcepsCalibration::force(std::uint16_t count) const noexcept {

@@ -24,7 +24,7 @@ struct ForcepsCalibration {
   static ForcepsCalibration load(const std::string& path);
   static ForcepsCalibration parse(const std::string& text, const std::string& file_name);
 
-  /// [rad], between 0 and the stop.
+  /// [rad], at most the stop; below zero the blades are bent beyond closure, at most as far.
   double angle(std::uint16_t count) const noexcept;
   /// [N], between 0 and the overload limit.
   double force(std::uint16_t count) const noexcept;

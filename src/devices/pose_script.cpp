@@ -13,13 +13,12 @@
 // tools:
 //   - tool: 0
 //     keys:
-//       - { t: "0 s", p: ["-4 mm", "0 mm", "6 mm"], handle: [-0.5, 0, 0.85], opening: [0, 1, 0], grip: "12
-//       deg" }
-//       - { t: "2 s", p: [...], buttons: [cut], stop: true, say: "Pick up the short end" }
-//       - { t: "3 s", arc: { centre: ["0 mm", "0 mm", "5 mm"], axis: [0, 1, 0], turns: -1.25, rise: "1 mm" }
-//       }
-// A key without p, handle, opening or grip keeps that of the key before; grip_force is optional for the whole
-// tool. An arc key without p ends where its turns, radius (default: unchanged) and rise (default: 0) lead.
+//       - { t: 0 s, p: [-4 mm, 0 mm, 6 mm], handle: [-0.5, 0, 0.85], opening: [0, 1, 0], grip: 12 deg }
+//       - { t: 2 s, p: [0 mm, 0 mm, 5 mm], buttons: [cut], stop: true, say: Pick up the short end }
+//       - { t: 3 s, arc: { centre: [0 mm, 0 mm, 5 mm], axis: [0, 1, 0], turns: -1.25, rise: 1 mm } }
+// A key without p, handle, opening or grip keeps that of the key before. A grip below zero squeezes beyond
+// closure. grip_force is optional, for all keys of a tool or none. An arc key without p ends where its turns,
+// radius (default: unchanged) and rise (default: 0) lead.
 
 namespace filum {
 namespace {
@@ -74,7 +73,7 @@ class KeyReader {
   bool has_force() const { return has_force_; }
 
  private:
-  static constexpr Range kAngles = {0.0, std::numbers::pi / 2, false};
+  static constexpr Range kAngles = {-std::numbers::pi / 6, std::numbers::pi / 2, false};
 
   void read_tip(const YamlNode& node, bool first, PoseKey& key) const {
     if (first && node.has("arc"))

@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (int count = 0; count <= 65535; count += 4369) {
       const double angle = c.angle(static_cast<std::uint16_t>(count)),
                    force = c.force(static_cast<std::uint16_t>(count));
-      if (!(angle >= 0.0 && angle <= c.angle_limit) || !(force >= 0.0 && force <= c.force_limit))
+      if (!(angle >= -c.angle_limit && angle <= c.angle_limit) || !(force >= 0.0 && force <= c.force_limit))
         std::abort();
     }
   } catch (const filum::InputError&) {
