@@ -3,6 +3,9 @@
 import * as THREE from "three";
 import { FullScreenQuad } from "three/examples/jsm/postprocessing/Pass.js";
 
+const kMaxBlur = 16; // [pixel]
+const kDeepest = 7; // [mm], defocus up to which blur is told apart
+
 const kVertex = /* glsl */ `
 varying vec2 vUv;
 void main() { vUv = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }`;
@@ -18,22 +21,25 @@ uniform float near;
 uniform float far;
 uniform float focus;     // distance of the focal plane [mm]
 uniform float blurScale; // [pixel] of blur radius per unit of |d - focus| / d
+uniform float maxBlur;  // [pixel], largest radius gathered
 uniform bool encode;
 
 float distanceAt(vec2 at) {
   float z = texture2D(depth, at).x;
   return near * far / (far - z * (far - near));
 }
-float blurAt(float d) { return clamp(abs(d - focus) / d * blurScale, 0.0, MAX_BLUR); }
+float blurAt(float d) { return clamp(abs(d - focus) / d * blurScale, 0.0, maxBlur); }
 
 vec3 gathered() {
   vec3 sum = texture2D(picture, vUv).rgb;
 #if SAMPLES > 0
   float centre = distanceAt(vUv), own = blurAt(centre), total = 1.0;
+  // a fixed turn of the sample disc from pixel to pixel hides its pattern
+  float start = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   for (int i = 1; i <= SAMPLES; ++i) {
     float f = float(i);
-    float radius = MAX_BLUR * sqrt(f / float(SAMPLES));
-    float angle = f * 2.39996323;
+    float radius = maxBlur * sqrt(f / float(SAMPLES));
+    float angle = start + f * 2.39996323;
     vec2 at = vUv + vec2(cos(angle), sin(angle)) * radius * texel;
     float d = distanceAt(at), size = blurAt(d);
     if (d > centre) size = min(size, own * 2.0);
@@ -74,10 +80,10 @@ export class FinishPass {
   constructor() {
     this.material = new THREE.ShaderMaterial({
       vertexShader: kVertex, fragmentShader: kFragment, depthTest: false, depthWrite: false, toneMapped: false,
-      defines: { SAMPLES: 0, MAX_BLUR: "14.0" },
+      defines: { SAMPLES: 0 },
       uniforms: {
         picture: { value: null }, depth: { value: null }, texel: { value: new THREE.Vector2() }, near: { value: 1 },
-        far: { value: 2 }, focus: { value: 200 }, blurScale: { value: 0 }, toneMappingExposure: { value: 1 }, encode: { value: true },
+        far: { value: 2 }, focus: { value: 200 }, blurScale: { value: 0 }, toneMappingExposure: { value: 1 }, maxBlur: { value: 1 }, encode: { value: true },
       },
     });
     this.merge = new THREE.ShaderMaterial({
@@ -104,6 +110,7 @@ export class FinishPass {
     u.far.value = camera.far;
     u.focus.value = focus;
     u.blurScale.value = blurScale;
+    u.maxBlur.value = Math.min(kMaxBlur, (blurScale * kDeepest) / focus);
     u.encode.value = target === null;
     renderer.setRenderTarget(target);
     this.quad.render(renderer);

@@ -3,11 +3,10 @@
 import * as THREE from "three";
 import type { ToolShape, ToolState } from "../messages";
 import { loft, type Section } from "./loft";
+import type { Materials } from "./materials";
 
 const kMm = 1000;
 const kReach = 62; // [mm], how far the handle is drawn; it leaves the field long before
-
-export interface Metals { bright: THREE.Material; dark: THREE.Material; grip: THREE.Material; bands: THREE.Material[] }
 
 interface Half { mesh: THREE.Mesh; side: 1 | -1; base: Float32Array | null; bent: Float32Array | null }
 
@@ -17,7 +16,7 @@ export class Instrument {
   private readonly morphs: Half[] = [];
   private readonly maxAngle: number;
 
-  constructor(readonly shape: ToolShape, index: number, metals: Metals) {
+  constructor(readonly shape: ToolShape, index: number, metals: Materials) {
     this.maxAngle = Math.max(0.05, shape.max_angle);
     if (shape.kind === "forceps") this.buildForceps(metals);
     else this.buildPivoted(metals, shape.kind === "scissors");
@@ -37,7 +36,7 @@ export class Instrument {
   }
 
   /// Forceps bend at the spring: the half with the jaw is drawn straight and fully open, and anything between is a blend.
-  private buildForceps(metals: Metals): void {
+  private buildForceps(metals: Materials): void {
     for (const side of [1, -1] as const) {
       const closed = loft(forcepsSections(this.shape, 0), side < 0);
       const open = loft(forcepsSections(this.shape, this.maxAngle / 2), side < 0);
@@ -51,7 +50,7 @@ export class Instrument {
   }
 
   /// Needle holder and scissors turn rigidly about a pin.
-  private buildPivoted(metals: Metals, blades: boolean): void {
+  private buildPivoted(metals: Materials, blades: boolean): void {
     const hinge = this.shape.jaw_length * kMm, radius = this.shape.base_radius * kMm;
     for (const side of [1, -1] as const) {
       const half = new THREE.Group();
@@ -79,7 +78,7 @@ export class Instrument {
   }
 
   /// One ring on the handle for the first tool, two for the second: told apart without colour.
-  private addBands(index: number, metals: Metals): void {
+  private addBands(index: number, metals: Materials): void {
     const z = this.shape.jaw_length * kMm + 5.5;
     for (let k = 0; k <= index; ++k) {
       for (const side of [1, -1] as const) {

@@ -8,6 +8,7 @@ import { Stage } from "./stage";
 
 export type StereoMode = "mono" | "side-by-side" | "anaglyph";
 
+const kThinnest = 0.8; // [CSS pixel], least radius of the thread on the page
 const kNear = 80, kFar = 320; // [mm]
 
 export class Microscope {
@@ -35,7 +36,7 @@ export class Microscope {
     this.renderer.autoClear = true;
     this.rendererName = describeRenderer(this.renderer.getContext());
     this.quality = new QualityChooser(isSoftwareRenderer(this.rendererName));
-    this.stage = new Stage(this.renderer);
+    this.stage = new Stage(this.renderer, this.quality.current.painted);
   }
 
   describe(scene: Scene): void {
@@ -44,7 +45,10 @@ export class Microscope {
     this.optics.centre = [...this.stage.centre];
   }
 
-  update(frame: Frame): void { this.stage.update(frame); }
+  update(frame: Frame): void {
+    this.stage.paint(this.quality.current.painted);
+    this.stage.update(frame, kThinnest * this.millimetresPerPixel);
+  }
 
   /// `diameter`: of the round field on the page [CSS pixel].
   resize(diameter: number): void { this.diameter = Math.max(64, Math.round(diameter)); }

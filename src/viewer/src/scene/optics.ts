@@ -13,7 +13,7 @@ export const kMagnificationMin = 5;
 export const kMagnificationMax = 40;
 export const kWorkingDistance = 200; // [mm], objective to focal plane
 export const kFieldNumber = 200; // [mm], field diameter times magnification
-export const kAperture = 22; // [mm], of one beam path at the objective; sets the depth of field
+export const kAperture = 14; // [mm], of one beam path at the objective; sets the depth of field
 
 export function fieldDiameter(magnification: number): number {
   return kFieldNumber / magnification;

@@ -8,14 +8,14 @@ export interface QualityLevel {
   shadowMap: number; // [texel], 0 = no shadows
   samples: number; // multi-sampling of the picture
   blurSamples: number; // depth of field, 0 = none
-  everyFrame: number; // 1 = draw on each screen refresh, 2 = on every second
+  painted: boolean; // cheap materials
 }
 
 export const kQualityLevels: readonly QualityLevel[] = [
-  { name: "software", pixelRatio: 0.75, shadowMap: 0, samples: 0, blurSamples: 0, everyFrame: 1 },
-  { name: "low", pixelRatio: 1, shadowMap: 1024, samples: 0, blurSamples: 0, everyFrame: 1 },
-  { name: "medium", pixelRatio: 1, shadowMap: 2048, samples: 4, blurSamples: 24, everyFrame: 1 },
-  { name: "high", pixelRatio: 2, shadowMap: 4096, samples: 4, blurSamples: 48, everyFrame: 1 },
+  { name: "software", pixelRatio: 0.75, shadowMap: 0, samples: 0, blurSamples: 0, painted: true },
+  { name: "low", pixelRatio: 1, shadowMap: 1024, samples: 0, blurSamples: 0, painted: false },
+  { name: "medium", pixelRatio: 1, shadowMap: 2048, samples: 4, blurSamples: 24, painted: false },
+  { name: "high", pixelRatio: 2, shadowMap: 4096, samples: 4, blurSamples: 48, painted: false },
 ];
 
 /// True where the picture is computed by the processor instead of a graphics chip.

@@ -3,22 +3,19 @@
 import * as THREE from "three";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
 import type { Frame, Scene } from "../messages";
-import { Instrument, type Metals } from "./instruments";
-import { brushedTextures, sheetTextures } from "./textures";
+import { Instrument } from "./instruments";
+import { kSheet, paintedMaterials, physicalMaterials, type Materials } from "./materials";
 import { ThreadTube } from "./thread";
 
 const kMm = 1000;
-const kSheet = 120; // [mm], width of the background sheet
 
 export class Stage {
   readonly scene = new THREE.Scene();
-  readonly key = new THREE.DirectionalLight(0xfff3e2, 2.5);
-  private readonly coaxial = new THREE.DirectionalLight(0xf4f8ff, 0.55);
+  readonly key = new THREE.DirectionalLight(0xfff1dd, 2.3);
+  private readonly coaxial = new THREE.DirectionalLight(0xf4f8ff, 0.4);
   private readonly content = new THREE.Group();
-  private readonly metals: Metals;
-  private readonly threadMaterial = new THREE.MeshPhysicalMaterial({
-    color: 0x0b1020, roughness: 0.34, clearcoat: 0.5, clearcoatRoughness: 0.25, specularIntensity: 0.8,
-  });
+  private materials: Materials;
+  private description: Scene | null = null;
   private instruments: Instrument[] = [];
   private thread: ThreadTube | null = null;
   private readonly points: { array: Float64Array } = { array: new Float64Array(0) };
@@ -29,15 +26,10 @@ export class Stage {
   centre: [number, number] = [0, 0]; // [mm], middle of the field at the start
   focusHeight = 0; // [mm], where a trainee would focus: the top of the post
 
-  constructor(renderer: THREE.WebGLRenderer) {
-    const room = new RoomEnvironment();
-    const generator = new THREE.PMREMGenerator(renderer);
-    this.scene.environment = generator.fromScene(room, 0.03).texture;
-    this.scene.environmentIntensity = 0.5;
-    generator.dispose();
-    room.dispose();
+  /// `painted`: cheap materials for a machine without a graphics chip.
+  constructor(private readonly renderer: THREE.WebGLRenderer, private painted: boolean) {
     this.scene.background = new THREE.Color(0x020303);
-    this.metals = makeMetals();
+    this.materials = this.makeMaterials();
     this.key.castShadow = true;
     this.key.shadow.bias = -0.0004;
     this.key.shadow.normalBias = 0.012;
@@ -45,7 +37,32 @@ export class Stage {
     this.scene.add(this.key, this.key.target, this.coaxial, this.coaxial.target, this.content);
   }
 
+  /// Exchanges the materials; the next frame fills the scene again.
+  paint(painted: boolean): void {
+    if (painted === this.painted) return;
+    this.painted = painted;
+    this.materials = this.makeMaterials();
+    if (this.description) this.describe(this.description);
+  }
+
+  private makeMaterials(): Materials {
+    if (this.painted) return paintedMaterials();
+    if (!this.scene.environment) this.scene.environment = this.roomLight();
+    return physicalMaterials();
+  }
+
+  /// Light of a room from all sides, so that metal has something to mirror.
+  private roomLight(): THREE.Texture {
+    const room = new RoomEnvironment(), generator = new THREE.PMREMGenerator(this.renderer);
+    const { texture } = generator.fromScene(room, 0.03);
+    generator.dispose();
+    room.dispose();
+    this.scene.environmentIntensity = 0.36;
+    return texture;
+  }
+
   describe(message: Scene): void {
+    this.description = message;
     this.clear();
     this.floorHeight = message.floor_height * kMm;
     this.focusHeight = message.post ? (message.post.position[2] + message.post.radius) * kMm : this.floorHeight;
@@ -53,21 +70,22 @@ export class Stage {
     this.threadRadius = message.thread_radius * kMm;
     this.addSheet();
     if (message.post) this.addPost(message.post);
-    this.instruments = message.tools.map((shape, index) => new Instrument(shape, index, this.metals));
+    this.instruments = message.tools.map((shape, index) => new Instrument(shape, index, this.materials));
     for (const instrument of this.instruments) this.content.add(instrument.group);
-    this.thread = new ThreadTube(Math.max(2, message.capacity), this.threadMaterial);
+    this.thread = new ThreadTube(Math.max(2, message.capacity), this.materials.thread);
     this.points.array = new Float64Array(3 * Math.max(2, message.capacity));
     this.content.add(this.thread.mesh);
   }
 
-  update(frame: Frame): void {
+  /// `thinnest` [mm]: least radius drawn, so that the thread does not fall between the pixels at low magnification.
+  update(frame: Frame, thinnest: number): void {
     const points = this.points.array;
     const count = Math.min(frame.positions.length, points.length);
     for (let i = 0; i < count; ++i) points[i] = frame.positions[i] * kMm;
     this.gaps.length = 0;
     if (frame.break_edge >= 0) this.gaps.push(frame.break_edge);
     for (const edge of frame.cuts) this.gaps.push(edge);
-    this.thread?.update(points, Math.floor(count / 3), this.threadRadius, this.gaps);
+    this.thread?.update(points, Math.floor(count / 3), Math.max(this.threadRadius, thinnest), this.gaps);
     for (let i = 0; i < this.instruments.length && i < frame.tools.length; ++i) this.instruments[i].update(frame.tools[i]);
   }
 
@@ -105,12 +123,7 @@ export class Stage {
   }
 
   private addSheet(): void {
-    const textures = sheetTextures(kSheet / 5);
-    const material = new THREE.MeshStandardMaterial({
-      map: textures.map, normalMap: textures.normal, roughnessMap: textures.rough, roughness: 1, metalness: 0,
-      normalScale: new THREE.Vector2(0.55, 0.55),
-    });
-    const sheet = new THREE.Mesh(new THREE.PlaneGeometry(kSheet, kSheet), material);
+    const sheet = new THREE.Mesh(new THREE.PlaneGeometry(kSheet, kSheet), this.materials.sheet);
     sheet.position.z = this.floorHeight;
     sheet.receiveShadow = true;
     this.content.add(sheet);
@@ -120,9 +133,7 @@ export class Stage {
     const radius = post.radius * kMm, half = post.half_length * kMm;
     const centre = new THREE.Vector3(...post.position).multiplyScalar(kMm);
     const axis = new THREE.Vector3(...post.axis).normalize();
-    const bar = new THREE.Mesh(new THREE.CapsuleGeometry(radius, 2 * half, 16, 48, 1), new THREE.MeshPhysicalMaterial({
-      color: 0xead9c4, roughness: 0.42, sheen: 0.3, sheenColor: new THREE.Color(0xffd9c0), clearcoat: 0.35, clearcoatRoughness: 0.3,
-    }));
+    const bar = new THREE.Mesh(new THREE.CapsuleGeometry(radius, 2 * half, 16, 48, 1), this.materials.post);
     bar.position.copy(centre);
     bar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), axis);
     bar.castShadow = bar.receiveShadow = true;
@@ -134,35 +145,17 @@ export class Stage {
   private stanchion(top: THREE.Vector3, axis: THREE.Vector3, radius: number): THREE.Object3D {
     const group = new THREE.Group();
     const height = top.z - this.floorHeight;
-    const collar = new THREE.Mesh(new THREE.CylinderGeometry(1.45 * radius, 1.45 * radius, 1.6 * radius, 40), this.metals.bright);
+    const collar = new THREE.Mesh(new THREE.CylinderGeometry(1.45 * radius, 1.45 * radius, 1.6 * radius, 40), this.materials.bright);
     collar.position.copy(top);
     collar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), axis);
-    const leg = new THREE.Mesh(new THREE.CylinderGeometry(0.8 * radius, 0.8 * radius, height, 32), this.metals.bright);
+    const leg = new THREE.Mesh(new THREE.CylinderGeometry(0.8 * radius, 0.8 * radius, height, 32), this.materials.bright);
     leg.rotation.x = Math.PI / 2;
     leg.position.set(top.x, top.y, top.z - height / 2);
-    const foot = new THREE.Mesh(new THREE.CylinderGeometry(2.6 * radius, 2.9 * radius, 0.5 * radius, 48), this.metals.dark);
+    const foot = new THREE.Mesh(new THREE.CylinderGeometry(2.6 * radius, 2.9 * radius, 0.5 * radius, 48), this.materials.black);
     foot.rotation.x = Math.PI / 2;
     foot.position.set(top.x, top.y, this.floorHeight + 0.25 * radius);
     group.add(collar, leg, foot);
     group.traverse((object) => { object.castShadow = object.receiveShadow = true; });
     return group;
   }
-}
-
-function makeMetals(): Metals {
-  const brushed = brushedTextures();
-  const metal = (color: number, roughness: number, scale: number) => new THREE.MeshStandardMaterial({
-    color, metalness: 1, roughness, roughnessMap: brushed.rough, normalMap: brushed.normal,
-    normalScale: new THREE.Vector2(scale, scale), envMapIntensity: 1.25, side: THREE.FrontSide,
-  });
-  return {
-    bright: metal(0xc3c8cf, 0.44, 0.5),
-    dark: metal(0xa6a29a, 0.36, 0.4),
-    grip: metal(0xb99a5e, 0.62, 1.4),
-    bands: [
-      new THREE.MeshStandardMaterial({ color: 0x1667c4, roughness: 0.4, metalness: 0.2 }),
-      new THREE.MeshStandardMaterial({ color: 0xd98a12, roughness: 0.4, metalness: 0.2 }),
-      new THREE.MeshStandardMaterial({ color: 0x7a2f91, roughness: 0.4, metalness: 0.2 }),
-    ],
-  };
 }

@@ -75,15 +75,15 @@ export function sheetTextures(tiles: number): SheetTextures {
   const image = g.createImageData(size, size);
   for (let i = 0; i < size * size; ++i) {
     const tone = 0.9 + 0.12 * (noise[i] - 0.47) + 0.10 * (grain[i] - 0.47);
-    image.data[4 * i] = 104 * tone;
-    image.data[4 * i + 1] = 160 * tone;
-    image.data[4 * i + 2] = 158 * tone;
+    image.data[4 * i] = 84 * tone;
+    image.data[4 * i + 1] = 142 * tone;
+    image.data[4 * i + 2] = 139 * tone;
     image.data[4 * i + 3] = 255;
   }
   g.putImageData(image, 0, 0);
-  g.strokeStyle = "rgba(20,62,70,0.20)";
+  g.strokeStyle = "rgba(12,52,60,0.42)";
   for (let k = 0; k < 5; ++k) {
-    g.lineWidth = k === 0 ? 2.6 : 1.2;
+    g.lineWidth = k === 0 ? 4.2 : 2;
     const at = (k * size) / 5 + 1;
     g.beginPath();
     g.moveTo(at, 0); g.lineTo(at, size);

@@ -79,13 +79,13 @@ export class ForcePanel {
     let tension = 0;
     for (const value of frame.tension) tension = Math.max(tension, value);
     const zone = tensionZone(tension, this.strength);
-    this.thread.show(tension, frame.broken ? "near-break" : zone, frame.broken ? "broken" : zone === "ok" ? "" : zone === "high" ? "high" : "near breaking");
+    this.thread.show(tension, frame.broken ? "near-break" : zone, frame.broken ? "broken" : zone === "ok" ? "" : zone === "high" ? "high" : "near limit");
     this.tools.forEach((parts, i) => {
       const tool = frame.tools[i];
       if (!tool) return;
       parts.grip.show(tool.grip_force, "ok", "");
       parts.pull.show(tool.thread_force, "ok", "");
-      setText(parts.state, !tool.input_valid ? "no input" : tool.grasped >= 0 ? "holds thread" : "");
+      setText(parts.state, !tool.input_valid ? "no input" : tool.grasped >= 0 ? "holding" : "");
       parts.state.classList.toggle("alarm", !tool.input_valid);
       parts.box.classList.toggle("active", active === i);
     });

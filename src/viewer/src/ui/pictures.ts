@@ -17,25 +17,35 @@ export const kThrows: Record<string, Throw[]> = {
 
 const kHalfWidth = 22, kHeight = 7.5, kSpacing = 27;
 
+function bezier(p: [number, number][]): Point[] {
+  return Array.from({ length: 9 }, (_, k): Point => {
+    const t = k / 8, u = 1 - t, w = [u * u * u, 3 * u * u * t, 3 * u * t * t, t * t * t];
+    return [w.reduce((sum, v, i) => sum + v * p[i][0], 0), w.reduce((sum, v, i) => sum + v * p[i][1], 0), 0];
+  });
+}
+
+const mirrored = (points: Point[]): Point[] => points.map(([x, y, z]) => [-x, y, z]);
+
 /// The two strands of a knot from the post upwards: each a list of points. Paper coordinates, y downwards.
 export function strands(throws: Throw[], base: number): [Point[], Point[]] {
-  const left: Point[] = [[-11, base + 13, 0]], right: Point[] = [[11, base + 13, 0]];
+  const rise = bezier([[-15, base + 30], [-16, base + 17], [-40, base + kHeight + 1], [-kHalfWidth, base + kHeight]]);
+  const left = rise.slice(0, -1), right = mirrored(left);
   let a = left, b = right; // a stands at the lower left of the next throw, b at the lower right
   throws.forEach((one, row) => {
-    const y = base - row * kSpacing, n = one.crossings, steps = n * 8;
+    const y = base - row * kSpacing, n = one.crossings, steps = n * 8, next = y - kSpacing + kHeight;
     const forth: Point[] = [], back: Point[] = [];
     for (let k = 0; k <= steps; ++k) {
       const turn = (Math.PI * n * k) / steps, x = -kHalfWidth + (2 * kHalfWidth * k) / steps;
       forth.push([x, y + kHeight * Math.cos(turn), one.sense * Math.sin(turn)]);
       back.push([x, y - kHeight * Math.cos(turn), -one.sense * Math.sin(turn)]);
     }
-    a.push([-kHalfWidth - 5, y + kHeight + 1, 0], ...forth, [kHalfWidth + 5, y - kHeight - 1, 0]);
-    b.push([kHalfWidth + 5, y + kHeight + 1, 0], ...back.reverse(), [-kHalfWidth - 5, y - kHeight - 1, 0]);
+    const out = row + 1 < throws.length
+      ? bezier([[kHalfWidth, y - kHeight], [kHalfWidth + 10, y - kHeight], [kHalfWidth + 10, next], [kHalfWidth, next]]).slice(1, -1)
+      : bezier([[kHalfWidth, y - kHeight], [kHalfWidth + 10, y - kHeight], [34, y - 14], [47, y - 20]]).slice(1);
+    a.push(...forth, ...out);
+    b.push(...back.reverse(), ...mirrored(out));
     [a, b] = [b, a]; // the strand that came from the right now stands at the left
   });
-  const top = base - (throws.length - 1) * kSpacing;
-  a.push([-30, top - 15, 0], [-43, top - 21, 0]);
-  b.push([30, top - 15, 0], [43, top - 21, 0]);
   return [left, right];
 }
 
@@ -67,7 +77,7 @@ function paint(lines: { points: Point[]; colour: string }[], width: number, rim:
   }
   pieces.sort((p, q) => p.height - q.height);
   return pieces.map(({ path, colour }) =>
-    `<path d="${path}" fill="none" stroke="${rim}" stroke-width="${width + 2.6}"/>` +
+    `<path d="${path}" fill="none" stroke="${rim}" stroke-width="${width + 1.8}"/>` +
     `<path d="${path}" fill="none" stroke="${colour}" stroke-width="${width}" stroke-linecap="round" stroke-linejoin="round"/>`).join("");
 }
 
@@ -90,17 +100,17 @@ function field(content: string, label: string): SVGElement {
 /// The knot as a diagram above the post. `tools`: with the tips of two instruments pulling the tails.
 export function knotPicture(knot: string, label: string, tools: boolean): SVGElement {
   const throws = kThrows[knot] ?? [];
-  const base = 12 + (throws.length - 2) * kSpacing * 0.5;
+  const base = 8 + (throws.length - 2) * kSpacing * 0.5;
   if (throws.length === 0) {
     const loose = "M-50 -20C-20 10 -18 -34 0 -12S24 24 50 -14";
     return field(`<path d="${loose}" fill="none" stroke="#12333b" stroke-width="4.5" stroke-linecap="round"/>`, label);
   }
   const [left, right] = strands(throws, base);
-  const post = `<ellipse cx="3" cy="${base + 31}" rx="24" ry="6" fill="#00000038"/>
-    <circle cy="${base + 17}" r="13.5" fill="#POST" stroke="#6d5a46" stroke-width=".8"/>`;
-  const round = `<path d="M-11 ${base + 13}C-17 ${base + 22} -12 ${base + 32.5} 0 ${base + 32.5}S17 ${base + 22} 11 ${base + 13}" fill="none" stroke="#0f2a3a" stroke-width="4.2" stroke-linecap="round"/>`;
-  const knotPaths = paint([{ points: left, colour: "#12324a" }, { points: right, colour: "#7a2b16" }], 4.2, "#8fc0b8");
-  const top = base - (throws.length - 1) * kSpacing - 21;
+  const post = `<ellipse cx="3" cy="${base + 46}" rx="22" ry="5" fill="#00000038"/>
+    <circle cy="${base + 30}" r="13" fill="#POST" stroke="#6d5a46" stroke-width=".8"/>`;
+  const round = `<path d="M-15 ${base + 30}A15 15 0 0 0 0 ${base + 45}" fill="none" stroke="#12324a" stroke-width="4.2"/><path d="M15 ${base + 30}A15 15 0 0 1 0 ${base + 45}" fill="none" stroke="#7a2b16" stroke-width="4.2"/>`;
+  const knotPaths = paint([{ points: left, colour: "#12324a" }, { points: right, colour: "#7a2b16" }], 4.2, "#0a2a2caa");
+  const top = base - (throws.length - 1) * kSpacing - 19;
   const jaws = tools ? `<g stroke="#2b333b" stroke-width=".6">
     <path d="M-40 ${top - 2}L-64 ${top - 20}L-64 ${top - 12}L-41 ${top + 1}Z" fill="#METAL"/><path d="M-40 ${top + 3}L-64 ${top + 2}L-64 ${top - 7}L-41 ${top + 0}Z" fill="#METAL"/>
     <path d="M40 ${top - 2}L64 ${top - 20}L64 ${top - 12}L41 ${top + 1}Z" fill="#METAL"/><path d="M40 ${top + 3}L64 ${top + 2}L64 ${top - 7}L41 ${top + 0}Z" fill="#METAL"/></g>` : "";
