@@ -76,13 +76,13 @@ std::string reason(const std::exception& error) {
 
 std::vector<char> bytes_of(soci::blob& blob) {
   std::vector<char> bytes(blob.get_len());
-  if (!bytes.empty()) bytes.resize(blob.read_from_start(bytes.data(), bytes.size()));
+  if (!bytes.empty()) bytes.resize(blob.read(0, bytes.data(), bytes.size()));
   return bytes;
 }
 
 void set_bytes(soci::blob& blob, std::span<const char> bytes) {
   blob.trim(0);
-  if (!bytes.empty()) blob.write_from_start(bytes.data(), bytes.size());
+  if (!bytes.empty()) blob.write(0, bytes.data(), bytes.size());
 }
 
 }  // namespace filum::database

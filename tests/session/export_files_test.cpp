@@ -81,7 +81,8 @@ TEST(ExportCsv, TheDictionaryNamesEveryColumnOfEveryFile) {
   for (const std::string& file : files) {
     const std::string name = std::filesystem::path(file).filename();
     if (name == "data-dictionary.csv") continue;
-    for (const std::string& column : read_csv(file)[0]) {
+    const Cells cells = read_csv(file);
+    for (const std::string& column : cells[0]) {
       ++described;
       const bool found = std::any_of(dictionary.begin(), dictionary.end(), [&](const auto& row) {
         return row[0] == name && row[1] == column && !row[2].empty() && !row[4].empty();

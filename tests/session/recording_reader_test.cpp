@@ -152,7 +152,9 @@ TEST(RecordingReader, ACrashedRecordingInAReadOnlyFolderIsRead) {
     RecorderOptions options = synthetic::options(folder.file("live"));
     Recorder recorder(options);
     for (std::uint64_t i = 1; i <= 100; ++i) recorder.record_step(synthetic::step(i));
-    while (recorder.status().steps_stored < 100) std::this_thread::yield();
+    for (int i = 0; i < 10000 && recorder.status().steps_stored < 100; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ASSERT_EQ(recorder.status().steps_stored, 100u) << recorder.status().message;
     // As after a crash: the file and its journal, without the closing that folds them together.
     std::filesystem::copy_file(folder.file("live"), locked + "/a");
     std::filesystem::copy_file(folder.file("live-wal"), locked + "/a-wal");
