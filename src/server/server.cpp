@@ -1,0 +1,473 @@
+#include "server/server.h"
+
+#include <utility>  // before Asio: its awaitable.hpp uses std::exchange without including it
+
+#include <boost/asio.hpp>
+#include <boost/beast.hpp>
+#include <deque>
+#include <functional>
+#include <map>
+#include <thread>
+
+#include "base/error.h"
+#include "server/control.h"
+#include "server/static_files.h"
+
+namespace filum {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using beast::error_code;
+using Text = std::shared_ptr<const std::string>;
+
+constexpr std::size_t kMaxBrowsers = 16;
+constexpr std::size_t kMaxConnections = 128;
+constexpr std::size_t kMaxHeader = 16 * 1024;       // [byte]
+constexpr std::size_t kMaxBody = 16 * 1024;         // [byte]
+constexpr std::size_t kMaxWaiting = 8 * 1024 * 1024;  // [byte] a browser may be behind before it is let go
+constexpr int kMaxBadMessages = 100;                // in a row
+constexpr std::chrono::seconds kHttpTimeout{30};
+constexpr const char* kPolicy =
+    "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; "
+    "connect-src 'self' ws:; frame-ancestors 'none'";
+
+Text shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
+
+// One browser's WebSocket. At most one read and one write are under way; messages wait in order, of frames only the newest.
+class Browser : public std::enable_shared_from_this<Browser> {
+ public:
+  using OnText = std::function<void(Browser&, std::string_view)>;
+  using OnEnd = std::function<void(Browser&)>;
+
+  Browser(tcp::socket socket, int id) : id(id), socket_(std::move(socket)) {}
+
+  void open(http::request<http::string_body> request, std::function<void(Browser&)> on_open, OnText on_text, OnEnd on_end) {
+    on_text_ = std::move(on_text);
+    on_end_ = std::move(on_end);
+    socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    socket_.read_message_max(kMaxClientMessage);
+    auto keep = std::make_shared<http::request<http::string_body>>(std::move(request));
+    socket_.async_accept(*keep, [self = shared_from_this(), keep, on_open = std::move(on_open)](error_code error) {
+      if (error) return self->end();
+      on_open(*self);
+      self->read();
+    });
+  }
+
+  void send(Text message) {
+    waiting_bytes_ += message->size();
+    waiting_.push_back(std::move(message));
+    if (waiting_bytes_ > kMaxWaiting) return close();
+    write();
+  }
+  void offer_frame(Text body) {
+    frame_ = std::move(body);
+    write();
+  }
+  void forget_frame() { frame_.reset(); }
+  void ack(std::uint64_t frame) {
+    credit_.ack(frame);
+    write();
+  }
+  void close() {
+    error_code ignored;
+    beast::get_lowest_layer(socket_).socket().close(ignored);
+  }
+
+  const int id;
+  int bad_in_a_row = 0;
+
+ private:
+  void read() {
+    socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) return self->end();
+      const auto data = self->buffer_.cdata();
+      self->on_text_(*self, std::string_view(static_cast<const char*>(data.data()), data.size()));
+      self->buffer_.consume(self->buffer_.size());
+      self->read();
+    });
+  }
+
+  void write() {
+    if (writing_ || ended_) return;
+    if (!waiting_.empty()) {
+      current_ = std::move(waiting_.front());
+      waiting_.pop_front();
+      waiting_bytes_ -= current_->size();
+    } else if (frame_ && credit_.available()) {
+      current_ = shared(frame_message(credit_.take(), *frame_));
+      frame_.reset();
+    } else {
+      return;
+    }
+    writing_ = true;
+    socket_.text(true);
+    socket_.async_write(asio::buffer(*current_), [self = shared_from_this()](error_code error, std::size_t) {
+      self->writing_ = false;
+      if (error) return self->end();
+      self->write();
+    });
+  }
+
+  void end() {
+    if (std::exchange(ended_, true)) return;
+    on_end_(*this);
+  }
+
+  websocket::stream<beast::tcp_stream> socket_;
+  beast::flat_buffer buffer_;
+  std::deque<Text> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  Text current_, frame_;
+  FrameCredit credit_;
+  bool writing_ = false;
+  bool ended_ = false;
+  OnText on_text_;
+  OnEnd on_end_;
+};
+
+// One HTTP connection: answers requests until it is closed or becomes a WebSocket.
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  using Request = http::request<http::string_body>;
+  using Answer = std::function<http::response<http::string_body>(const Request&)>;
+  using Upgrade = std::function<void(tcp::socket, Request)>;
+
+  Connection(tcp::socket socket, Answer answer, Upgrade upgrade, std::shared_ptr<void> slot)
+      : stream_(std::move(socket)), answer_(std::move(answer)), upgrade_(std::move(upgrade)), slot_(std::move(slot)) {}
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(kMaxHeader);
+    parser_->body_limit(kMaxBody);
+    stream_.expires_after(kHttpTimeout);
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+      self->on_read(error);
+    });
+  }
+
+ private:
+  void on_read(error_code error) {
+    if (error == http::error::body_limit) return refuse(http::status::payload_too_large);
+    if (error == http::error::header_limit) return refuse(http::status::request_header_fields_too_large);
+    if (error) return;
+    Request request = parser_->release();
+    auto response = answer_(request);
+    if (response.result() == http::status::switching_protocols) {
+      stream_.expires_never();
+      return upgrade_(stream_.release_socket(), std::move(request));
+    }
+    write(std::move(response), request.method() == http::verb::head);
+  }
+
+  void refuse(http::status status) {
+    http::response<http::string_body> response(status, 11);
+    response.keep_alive(false);
+    response.prepare_payload();
+    write(std::move(response), false);
+  }
+
+  void write(http::response<http::string_body> response, bool head) {
+    response_ = std::move(response);
+    serializer_.emplace(response_);
+    serializer_->split(head);
+    auto done = [self = shared_from_this()](error_code error, std::size_t) {
+      if (error) return;
+      if (self->response_.keep_alive()) return self->read();
+      error_code ignored;
+      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    };
+    if (head) return http::async_write_header(stream_, *serializer_, done);
+    http::async_write(stream_, *serializer_, done);
+  }
+
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  http::response<http::string_body> response_;
+  std::optional<http::response_serializer<http::string_body>> serializer_;
+  Answer answer_;
+  Upgrade upgrade_;
+  std::shared_ptr<void> slot_;  // counts open connections
+};
+
+std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+}  // namespace
+
+struct Server::Impl {
+  Impl(ServerOptions options_in, ServerHost& host_in) : options(std::move(options_in)), host(host_in), acceptor(io) { listen(); }
+
+  void listen() {
+    error_code error;
+    const auto address = asio::ip::make_address(options.address, error);
+    if (error) throw InputError("--address", "address", options.address, "an IP address of this machine, e.g. 127.0.0.1");
+    on_loopback = address.is_loopback();
+    const tcp::endpoint endpoint(address, options.port);
+    acceptor.open(endpoint.protocol());
+    acceptor.set_option(asio::socket_base::reuse_address(true));
+    acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    if (error == asio::error::address_in_use) {
+      throw InputError("--port", "port", std::to_string(options.port) + ", which another program is using",
+                       "a free port: close the other program (perhaps a second trainer), or choose one with --port N; "
+                       "--port 0 takes any free one");
+    }
+    if (error) {
+      throw InputError("--address", "address", options.address + " (" + error.message() + ")",
+                       "an address of this machine and a port that may be opened");
+    }
+    port = acceptor.local_endpoint().port();
+  }
+
+  void accept() {
+    acceptor.async_accept([this](error_code error, tcp::socket socket) {
+      if (error == asio::error::operation_aborted) return;
+      if (!error && static_cast<std::size_t>(slot.use_count()) <= kMaxConnections) {
+        error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);
+        std::make_shared<Connection>(
+            std::move(socket), [this](const Connection::Request& request) { return answer(request); },
+            [this](tcp::socket s, Connection::Request request) { add_browser(std::move(s), std::move(request)); }, slot)
+            ->read();
+      }
+      accept();
+    });
+  }
+
+  http::response<http::string_body> plain(const Connection::Request& request, http::status status, std::string_view type,
+                                          std::string body) const {
+    http::response<http::string_body> response(status, request.version());
+    response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+    response.set(http::field::cache_control, "no-cache");
+    response.set("X-Content-Type-Options", "nosniff");
+    response.set("Content-Security-Policy", kPolicy);
+    response.keep_alive(request.keep_alive());
+    response.body() = std::move(body);
+    response.prepare_payload();
+    return response;
+  }
+
+  http::response<http::string_body> fail(const Connection::Request& request, http::status status, std::string what) const {
+    return plain(request, status, "text/plain; charset=utf-8", std::move(what) + "\n");
+  }
+
+  http::response<http::string_body> answer(const Connection::Request& request) {
+    const auto path = request_path(view_of(request.target()));
+    if (!path) return fail(request, http::status::bad_request, "malformed path");
+    if (!origin_allowed("", view_of(request[http::field::host]), on_loopback)) {
+      return fail(request, http::status::forbidden, "addressed by a foreign name: open " + url());
+    }
+    if (websocket::is_upgrade(request)) return answer_upgrade(request, *path);
+    if (request.method() != http::verb::get && request.method() != http::verb::head) {
+      return fail(request, http::status::method_not_allowed, "only GET");
+    }
+    if (path->starts_with("/api/")) return answer_api(request, *path);
+    return answer_file(request, *path);
+  }
+
+  http::response<http::string_body> answer_upgrade(const Connection::Request& request, const std::string& path) const {
+    if (path != "/ws") return fail(request, http::status::not_found, "the WebSocket is at /ws");
+    if (!origin_allowed(view_of(request[http::field::origin]), view_of(request[http::field::host]), on_loopback)) {
+      return fail(request, http::status::forbidden, "page of another origin");
+    }
+    if (browsers.size() >= kMaxBrowsers) return fail(request, http::status::service_unavailable, "too many browsers");
+    return {http::status::switching_protocols, request.version()};
+  }
+
+  http::response<http::string_body> answer_api(const Connection::Request& request, const std::string& path) {
+    if (path == "/api/tasks") return plain(request, http::status::ok, "application/json", task_list_json(options.hello.tasks));
+    if (path == "/api/health") {
+      return plain(request, http::status::ok, "application/json",
+                   health_json(options.hello.version, trainer, control.clients(), real_time_factor, overruns));
+    }
+    const auto json = host.api(path);
+    if (!json) return fail(request, http::status::not_found, "no such resource");
+    return plain(request, http::status::ok, "application/json", *json);
+  }
+
+  http::response<http::string_body> answer_file(const Connection::Request& request, const std::string& path) const {
+    const auto file = find_static_file(options.viewer_folder, path);
+    if (!file && path == "/") {
+      return fail(request, http::status::not_found, "The viewer is not built: run ./filum, which builds it, or `npm run build` in src/viewer.");
+    }
+    if (!file) return fail(request, http::status::not_found, "no such file");
+    http::file_body::value_type reader;
+    error_code error;
+    reader.open(file->c_str(), beast::file_mode::scan, error);
+    std::string body;
+    if (!error) body.resize(static_cast<std::size_t>(reader.size()));
+    if (!error && !body.empty()) body.resize(reader.file().read(body.data(), body.size(), error));
+    if (error) return fail(request, http::status::internal_server_error, "file cannot be read");
+    return plain(request, http::status::ok, media_type(*file), std::move(body));
+  }
+
+  void add_browser(tcp::socket socket, Connection::Request request) {
+    auto browser = std::make_shared<Browser>(std::move(socket), ++last_browser);
+    browser->open(
+        std::move(request), [this, weak = std::weak_ptr(browser)](Browser& b) { greet(b, weak); },
+        [this](Browser& b, std::string_view text) { receive(b, text); }, [this](Browser& b) { remove(b); });
+  }
+
+  void greet(Browser& browser, const std::weak_ptr<Browser>& owner) {
+    browsers[browser.id] = owner.lock();
+    control.join(browser.id);
+    browser.send(shared(hello_message(options.hello, browser.id)));
+    if (scene) browser.send(scene);
+    if (result) browser.send(result);
+    if (replay) browser.send(replay);
+    send_states();
+    if (last_frame) browser.offer_frame(last_frame);
+  }
+
+  void remove(Browser& browser) {
+    const bool had_control = control.in_control(browser.id);
+    control.leave(browser.id);
+    browsers.erase(browser.id);
+    if (had_control) host.controlled(false);
+    send_states();
+  }
+
+  void send_states() {
+    for (auto& [id, browser] : browsers) {
+      browser->send(shared(session_state_message(trainer, control.controller(), control.in_control(id), control.clients())));
+    }
+  }
+
+  bool acquire(Browser& browser, bool take_over) {
+    if (control.in_control(browser.id)) return true;
+    if (!control.acquire(browser.id, take_over)) return false;
+    host.controlled(true);
+    send_states();
+    return true;
+  }
+
+  void receive(Browser& browser, std::string_view text) {
+    const auto parsed = parse_client_message(text);
+    if (const auto* refusal = std::get_if<Refusal>(&parsed)) {
+      browser.send(shared(error_message(*refusal)));
+      if (++browser.bad_in_a_row > kMaxBadMessages) browser.close();
+      return;
+    }
+    browser.bad_in_a_row = 0;
+    const ClientMessage& message = std::get<ClientMessage>(parsed);
+    if (const auto* ack = std::get_if<AckMessage>(&message)) return browser.ack(ack->frame);
+    if (std::holds_alternative<TakeControlMessage>(message)) {
+      acquire(browser, true);
+      return;
+    }
+    const auto* start = std::get_if<StartMessage>(&message);
+    if (acquire(browser, start != nullptr && start->take_over)) return host.command(message);
+    if (std::holds_alternative<PointerMessage>(message)) return;  // a watcher's pointer moves nothing
+    browser.send(shared(error_message({"not-in-control", "Another browser is in control.",
+                                       "Watch, or take over with the button \"Take control\"."})));
+  }
+
+  void broadcast(const Text& message) {
+    for (auto& [id, browser] : browsers) browser->send(message);
+  }
+
+  std::string url() const {
+    const bool any = options.address == "0.0.0.0" || options.address == "::";
+    const std::string name = options.address.find(':') != std::string::npos ? "[" + options.address + "]" : options.address;
+    return "http://" + (any ? "127.0.0.1" : name) + ":" + std::to_string(port) + "/";
+  }
+
+  template <class Function>
+  void post(Function function) {
+    asio::post(io, std::move(function));
+  }
+
+  ServerOptions options;
+  ServerHost& host;
+  asio::io_context io{1};
+  tcp::acceptor acceptor;
+  std::shared_ptr<void> slot = std::make_shared<int>(0);
+  std::uint16_t port = 0;
+  bool on_loopback = true;
+  std::thread thread;
+
+  // Below: only touched by the server's thread.
+  std::map<int, std::shared_ptr<Browser>> browsers;
+  int last_browser = 0;
+  Control control;
+  TrainerView trainer;
+  Text scene, result, replay, last_frame;
+  double real_time_factor = 1.0;
+  std::uint64_t overruns = 0;
+};
+
+Server::Server(ServerOptions options, ServerHost& host) : impl_(std::make_unique<Impl>(std::move(options), host)) {}
+
+Server::~Server() { stop(); }
+
+void Server::start() {
+  impl_->accept();
+  impl_->thread = std::thread([this] { impl_->io.run(); });
+}
+
+void Server::stop() {
+  impl_->io.stop();
+  if (impl_->thread.joinable()) impl_->thread.join();
+}
+
+std::uint16_t Server::port() const { return impl_->port; }
+
+std::string Server::url() const { return impl_->url(); }
+
+void Server::publish_trainer(const TrainerView& trainer) {
+  impl_->post([impl = impl_.get(), trainer] {
+    impl->trainer = trainer;
+    impl->send_states();
+  });
+}
+
+void Server::publish_devices(std::vector<DeviceView> devices) {
+  impl_->post([impl = impl_.get(), devices = std::move(devices)] { impl->options.hello.devices = devices; });
+}
+
+void Server::publish_scene(const SceneDescription& scene) {
+  impl_->post([impl = impl_.get(), text = shared(scene_message(scene))] {
+    impl->scene = text;
+    impl->result.reset();
+    impl->replay.reset();
+    impl->last_frame.reset();
+    for (auto& [id, browser] : impl->browsers) browser->forget_frame();
+    impl->broadcast(text);
+  });
+}
+
+void Server::publish_result(std::string result_message) {
+  impl_->post([impl = impl_.get(), text = shared(std::move(result_message))] { impl->broadcast(impl->result = text); });
+}
+
+void Server::publish_replay(const ReplayView& replay) {
+  impl_->post([impl = impl_.get(), text = shared(replay_state_message(replay))] { impl->broadcast(impl->replay = text); });
+}
+
+void Server::publish_frame(std::string body, double real_time_factor, std::uint64_t overruns) {
+  impl_->post([impl = impl_.get(), text = shared(std::move(body)), real_time_factor, overruns] {
+    impl->last_frame = text;
+    impl->real_time_factor = real_time_factor;
+    impl->overruns = overruns;
+    for (auto& [id, browser] : impl->browsers) browser->offer_frame(text);
+  });
+}
+
+void Server::publish_event(const EventView& event) {
+  impl_->post([impl = impl_.get(), text = shared(event_message(event))] { impl->broadcast(text); });
+}
+
+void Server::publish_error(const Refusal& refusal) {
+  impl_->post([impl = impl_.get(), text = shared(error_message(refusal))] {
+    const auto controller = impl->browsers.find(impl->control.controller());
+    if (controller == impl->browsers.end()) return impl->broadcast(text);
+    controller->second->send(text);
+  });
+}
+
+}  // namespace filum

@@ -1,0 +1,8 @@
+find_package(nlohmann_json REQUIRED)
+filum_test(server/client_message nlohmann_json::nlohmann_json)
+filum_test(server/control)
+filum_test(server/encode nlohmann_json::nlohmann_json)
+filum_test(server/origin)
+filum_test(server/server nlohmann_json::nlohmann_json)
+filum_test(server/static_files)
+filum_fuzz(server/client_message)
