@@ -1,0 +1,122 @@
+#include "training/result_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace filum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json finite(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (double value : values) list.push_back(finite(value));
+  return list;
+}
+
+Json score_json(const Result& r) {
+  Json items = Json::array();
+  for (const ScoreItem& item : r.items) {
+    Json value = nullptr;
+    if (item.number) value = finite(*item.number);
+    if (!item.text.empty()) value = item.text;
+    items.push_back({{"name", item.name},
+                     {"value", value},
+                     {"unit", item.unit},
+                     {"points", finite(item.points)},
+                     {"max_points", finite(item.max_points)},
+                     {"why", item.why}});
+  }
+  return {{"total", finite(r.total)}, {"max_total", finite(r.max_total)}, {"items", items}};
+}
+
+Json knot_json(const Result& r) {
+  return {{"class", r.knot.knot_class},
+          {"security_newton", r.security ? finite(r.security->slip_force) : Json(nullptr)},
+          {"held", r.security && r.security->held}};
+}
+
+Json report_json(const KnotReport& k) {
+  return {{"composition", k.composition},
+          {"half_twists", k.throws},
+          {"throws", k.n_throws},
+          {"jones", k.jones},
+          {"alexander", k.alexander},
+          {"determinant", k.determinant},
+          {"crossings", k.n_crossings},
+          {"encloses_post", k.encloses_post},
+          {"post_winding", k.post_winding},
+          {"confidence", finite(k.confidence)},
+          {"strand_turning_rad", {finite(k.strand_turning[0]), finite(k.strand_turning[1])}},
+          {"note", k.note}};
+}
+
+Json measures_json(const Measures& m) {
+  return {{"time_s", finite(m.seconds)},
+          {"throws", m.throws},
+          {"short_tail_m", finite(m.short_tail)},
+          {"long_tail_m", finite(m.long_tail)},
+          {"path_length_m", finite(m.path_length)},
+          {"movements", m.movements},
+          {"idle_time_s", finite(m.idle_time)},
+          {"sparc", finite(m.sparc)},
+          {"ldlj", finite(m.ldlj)},
+          {"smooth_segments", m.smooth_segments},
+          {"grip_peak_n", finite(m.grip_peak)},
+          {"grip_median_n", finite(m.grip_median)},
+          {"grasps", m.grasps},
+          {"drops", m.drops},
+          {"tension_peak_n", finite(m.tension_peak)},
+          {"overload_share", finite(m.overload)},
+          {"both_moving_share", finite(m.both_moving)},
+          {"speed_correlation", finite(m.speed_correlation)},
+          {"speed_lag_s", finite(m.speed_lag)},
+          {"dominance_share", finite(m.dominance)}};
+}
+
+Json events_json(const std::vector<TaskEvent>& events) {
+  Json list = Json::array();
+  for (const TaskEvent& e : events) {
+    list.push_back({{"time", finite(e.time)},
+                    {"name", e.name},
+                    {"tool", e.tool},
+                    {"value", finite(e.value)},
+                    {"unit", e.unit},
+                    {"text", e.text}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string result_json(const Result& r, bool full) {
+  Json json = {{"task", r.task},         {"title", r.title},     {"finished", r.finished},
+               {"passed", r.passed},     {"seconds", finite(r.seconds)}, {"score", score_json(r)},
+               {"knot", knot_json(r)},   {"events", events_json(r.events)}};
+  json["series"] = Json::array();
+  for (const Curve& c : r.series) {
+    json["series"].push_back(
+        {{"name", c.name}, {"title", c.title}, {"unit", c.unit}, {"time", finite(c.time)}, {"value", finite(c.value)}});
+  }
+  json["paths"] = Json::array();
+  for (const ToolPath& p : r.paths) {
+    json["paths"].push_back(
+        {{"tool", p.tool}, {"name", p.name}, {"positions", finite(p.positions)}, {"time", finite(p.time)}});
+  }
+  if (full) {
+    json["verdict"] = r.verdict;
+    json["measures"] = measures_json(r.measures);
+    json["knot_report"] = report_json(r.knot);
+    if (r.security) {
+      json["security"] = {{"held", r.security->held},
+                          {"slip_force_newton", finite(r.security->slip_force)},
+                          {"max_pull_newton", finite(r.security->max_pull)},
+                          {"elongation_m", finite(r.security->elongation)}};
+    }
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace filum

@@ -1,0 +1,256 @@
+#include "training/score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "base/units.h"
+#include "training/metrics.h"
+
+namespace filum {
+namespace {
+
+constexpr double kGraspForce = 20e-3;  // [N], squeeze above which something is held
+
+std::string number_text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.3g", value);
+  return buffer;
+}
+
+/// "12.5 mm"; "-" units are left out.
+std::string shown(double si, const std::string& unit) {
+  std::string text = number_text(si / unit_scale(unit));
+  if (unit != "-") text.append(" ").append(unit);
+  return text;
+}
+
+std::string band_text(const RubricItem& item) {
+  const Band& b = item.band;
+  const bool low = std::isfinite(b.full_from), high = std::isfinite(b.full_to);
+  std::string text = "full points ";
+  if (low && high) text += "from " + shown(b.full_from, item.unit) + " to " + shown(b.full_to, item.unit);
+  if (low && !high) text += "from " + shown(b.full_from, item.unit);
+  if (!low && high) text += "up to " + shown(b.full_to, item.unit);
+  if (low && b.zero_below < b.full_from) text += ", none below " + shown(b.zero_below, item.unit);
+  if (high && b.zero_above > b.full_to) text += ", none from " + shown(b.zero_above, item.unit);
+  return text;
+}
+
+double value_of(Measure measure, const Result& r) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const Measures& m = r.measures;
+  switch (measure) {
+    case Measure::time: return m.seconds;
+    case Measure::throws: return m.throws;
+    case Measure::security: return r.security ? r.security->slip_force : kNaN;
+    case Measure::path_length: return m.path_length;
+    case Measure::movements: return m.movements;
+    case Measure::idle_time: return m.idle_time;
+    case Measure::sparc: return m.sparc;
+    case Measure::ldlj: return m.ldlj;
+    case Measure::grip_peak: return m.grip_peak;
+    case Measure::drops: return m.drops;
+    case Measure::thread_overload: return m.overload;
+    case Measure::both_moving: return m.both_moving;
+    case Measure::knot_class:
+    case Measure::tail_lengths: return kNaN;
+  }
+  return kNaN;
+}
+
+/// What the value alone does not say.
+std::string remark(Measure measure, const Result& r) {
+  const Measures& m = r.measures;
+  switch (measure) {
+    case Measure::security:
+      return r.security && r.security->held ? "held at the strongest pull; " : "slipped or broke at this pull; ";
+    case Measure::sparc:
+    case Measure::ldlj: return "median of " + std::to_string(m.smooth_segments) + " movements; ";
+    case Measure::grip_peak:
+      return "largest of " + std::to_string(m.grasps) + " grasps, median " + shown(m.grip_median, "N") + "; ";
+    case Measure::thread_overload: return "largest tension " + shown(m.tension_peak, "mN") + "; ";
+    default: return {};
+  }
+}
+
+const char* why_not_measured(Measure measure) {
+  switch (measure) {
+    case Measure::security: return "the knot was not pulled";
+    case Measure::sparc:
+    case Measure::ldlj: return "no movement between 0.3 s and 10 s long";
+    case Measure::tail_lengths: return "the tails were not both cut, or there is no knot";
+    default: return "nothing to measure";
+  }
+}
+
+bool accepted(const Task& task, const std::string& knot_class) {
+  return std::find(task.accept.begin(), task.accept.end(), knot_class) != task.accept.end();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " or ") + word;
+  return text;
+}
+
+void score_knot(const Task& task, const Result& r, ScoreItem& item) {
+  item.text = r.knot.knot_class;
+  const bool right = accepted(task, r.knot.knot_class);
+  item.points = right && r.knot.encloses_post ? item.max_points : 0.0;
+  item.why = "the thread's shape is a ";
+  item.why += r.knot.knot_class;
+  if (!r.knot.composition.empty()) item.why += " (" + r.knot.composition + ")";
+  item.why += right ? ", as asked" : ", asked for was " + joined(task.accept);
+  if (right && !r.knot.encloses_post) item.why += ", but it does not enclose the post";
+  item.why += "; decided by topology (Jones polynomial)";
+}
+
+void score_tails(const RubricItem& rule, const Result& r, ScoreItem& item) {
+  const double shorter = r.measures.short_tail, longer = r.measures.long_tail;
+  if (std::isnan(shorter) || std::isnan(longer)) {
+    item.why = why_not_measured(Measure::tail_lengths);
+    return;
+  }
+  const double share_short = rule.band.share(shorter), share_long = rule.band.share(longer);
+  item.number = (share_short <= share_long ? shorter : longer) / unit_scale(rule.unit);
+  item.points = item.max_points * std::min(share_short, share_long);
+  item.why = "tails " + shown(shorter, rule.unit) + " and " + shown(longer, rule.unit) + ", the worse one counts; " +
+             band_text(rule);
+}
+
+ScoreItem score_item(const Task& task, const RubricItem& rule, const Result& r) {
+  ScoreItem item;
+  item.name = name_of(rule.measure);
+  item.title = rule.title;
+  item.unit = rule.unit;
+  item.max_points = rule.points;
+  if (rule.measure == Measure::knot_class) {
+    score_knot(task, r, item);
+  } else if (rule.measure == Measure::tail_lengths) {
+    score_tails(rule, r, item);
+  } else if (const double value = value_of(rule.measure, r); std::isnan(value)) {
+    item.why = std::string("no points: ") + why_not_measured(rule.measure);
+  } else {
+    item.number = value / unit_scale(rule.unit);
+    item.points = rule.points * rule.band.share(value);
+    item.why = shown(value, rule.unit) + ": " + remark(rule.measure, r) + band_text(rule);
+  }
+  item.why += ". Source: " + rule.source;
+  return item;
+}
+
+void judge(const Task& task, bool broken, Result& r) {
+  const auto fail = [&r](std::string reason) { r.verdict.push_back(std::move(reason)); };
+  if (task.demonstration_only) fail("a demonstration does not pass");
+  if (!r.finished) fail("not all steps were done");
+  if (broken) fail("the thread broke");
+  if (!accepted(task, r.knot.knot_class)) fail("the knot is a " + r.knot.knot_class + ", not a " + joined(task.accept));
+  if (r.knot.knot_class != "unknot" && !r.knot.encloses_post) fail("the knot does not enclose the post");
+  if (task.required_security > 0.0) {
+    if (!r.security) {
+      fail("the knot was not pulled");
+    } else if (r.security->slip_force < task.required_security) {
+      fail("the knot gave way at " + shown(r.security->slip_force, "mN") + ", asked for are " +
+           shown(task.required_security, "mN"));
+    }
+  }
+  if (r.total < task.pass_points) {
+    fail(number_text(r.total) + " points, asked for are " + number_text(task.pass_points));
+  }
+  r.passed = r.verdict.empty();
+  if (r.passed) r.verdict.push_back("all that was asked for was met (simulator-derived estimate)");
+}
+
+/// Every k-th index so that at most kMaxCurvePoints are left.
+std::size_t stride_of(std::size_t n) { return std::max<std::size_t>(1, (n + kMaxCurvePoints - 1) / kMaxCurvePoints); }
+
+/// Thinned curve; each point is the largest of the samples it stands for, so that peaks stay.
+Curve curve(const std::string& name, const std::string& title, const std::string& unit, const std::vector<double>& time,
+            const std::vector<double>& value) {
+  Curve c{name, title, unit, {}, {}};
+  const std::size_t stride = stride_of(time.size()), n = std::min(time.size(), value.size());
+  for (std::size_t k = 0; k < n; k += stride) {
+    const auto begin = value.begin() + static_cast<std::ptrdiff_t>(k);
+    const auto end = value.begin() + static_cast<std::ptrdiff_t>(std::min(n, k + stride));
+    c.time.push_back(time[k]);
+    c.value.push_back(*std::max_element(begin, end));
+  }
+  return c;
+}
+
+}  // namespace
+
+Measures measure(const SeriesLog& log, const std::vector<TaskEvent>& events, double strength) {
+  Measures m;
+  std::vector<double> peaks;
+  std::vector<double> sparcs, ldljs, fastest(log.size(), 0.0);
+  for (int t = 0; t < log.n_tools(); ++t) {
+    const Points path = log.tool(t).path();
+    const std::vector<double> speed = speed_of(path, kMetricRate);
+    for (std::size_t k = 0; k < speed.size(); ++k) fastest[k] = std::max(fastest[k], speed[k]);
+    const std::vector<Segment> segments = movements(speed, kMetricRate);
+    m.path_length += path_length(path);
+    m.movements += static_cast<int>(segments.size());
+    for (const Segment& segment : segments) {
+      const Smoothness one = smoothness_of(speed, kMetricRate, {segment});
+      if (one.sparc.n == 0) continue;
+      sparcs.push_back(one.sparc.median);
+      ldljs.push_back(one.ldlj.median);
+    }
+    const std::vector<double> grips = force_peaks(log.tool(t).grip, kGraspForce);
+    peaks.insert(peaks.end(), grips.begin(), grips.end());
+  }
+  m.smooth_segments = static_cast<int>(sparcs.size());
+  m.sparc = spread_of(sparcs).median;
+  m.ldlj = spread_of(ldljs).median;
+  m.idle_time = idle_time(fastest, kMetricRate);
+  m.grasps = static_cast<int>(peaks.size());
+  m.grip_median = peaks.empty() ? 0.0 : spread_of(peaks).median;
+  m.grip_peak = peaks.empty() ? 0.0 : *std::max_element(peaks.begin(), peaks.end());
+  for (const TaskEvent& e : events) m.drops += std::string_view(e.name) == "drop" ? 1 : 0;
+  for (double tension : log.tension()) m.tension_peak = std::max(m.tension_peak, tension);
+  m.overload = strength > 0.0 ? m.tension_peak / strength : std::numeric_limits<double>::quiet_NaN();
+  if (log.n_tools() >= 2) {
+    const Bimanual both = bimanual(log.tool(0).path(), log.tool(1).path(), kMetricRate);
+    m.both_moving = both.both_moving;
+    m.speed_correlation = both.correlation;
+    m.speed_lag = both.lag;
+    m.dominance = both.dominance;
+  }
+  return m;
+}
+
+void score(const Task& task, bool broken, Result& result) {
+  result.items.clear();
+  result.verdict.clear();
+  result.total = 0.0;
+  result.max_total = task.max_total();
+  for (const RubricItem& rule : task.rubric) {
+    result.items.push_back(score_item(task, rule, result));
+    result.total += result.items.back().points;
+  }
+  judge(task, broken, result);
+}
+
+void add_curves(const SeriesLog& log, const SceneDescription& scene, Result& result) {
+  result.series.push_back(curve("thread_tension", "Largest tension of the thread", "N", log.time(), log.tension()));
+  for (int t = 0; t < log.n_tools(); ++t) {
+    const std::string& name = scene.tools[static_cast<std::size_t>(t)].name;
+    const ToolLog& tool = log.tool(t);
+    result.series.push_back(curve("speed_" + name, "Speed of " + name, "m/s", log.time(),
+                                  low_pass(speed_of(tool.path(), kMetricRate), kMetricRate, 6.0)));
+    result.series.push_back(curve("grip_force_" + name, "Squeeze of " + name, "N", log.time(), tool.grip));
+    result.series.push_back(curve("thread_force_" + name, "Pull of the thread on " + name, "N", log.time(),
+                                  tool.thread_force));
+    ToolPath path{t, name, {}, {}};
+    for (std::size_t k = 0; k < log.size(); k += stride_of(log.size())) {
+      path.time.push_back(log.time()[k]);
+      for (int axis = 0; axis < 3; ++axis) path.positions.push_back(tool.tip[k][axis]);
+    }
+    result.paths.push_back(std::move(path));
+  }
+}
+
+}  // namespace filum

@@ -1,0 +1,171 @@
+#include "training/task.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/units.h"
+
+namespace filum {
+namespace {
+
+struct MeasureName {
+  Measure measure;
+  const char* name;
+  const char* unit;
+};
+
+constexpr std::array kMeasures = {
+    MeasureName{Measure::time, "time", "s"},
+    MeasureName{Measure::throws, "throws", "-"},
+    MeasureName{Measure::knot_class, "knot-class", "-"},
+    MeasureName{Measure::security, "security", "N"},
+    MeasureName{Measure::tail_lengths, "tail-lengths", "m"},
+    MeasureName{Measure::path_length, "path-length", "m"},
+    MeasureName{Measure::movements, "movements", "-"},
+    MeasureName{Measure::idle_time, "idle-time", "s"},
+    MeasureName{Measure::sparc, "sparc", "-"},
+    MeasureName{Measure::ldlj, "ldlj", "-"},
+    MeasureName{Measure::grip_peak, "grip-peak", "N"},
+    MeasureName{Measure::drops, "drops", "-"},
+    MeasureName{Measure::thread_overload, "thread-overload", "-"},
+    MeasureName{Measure::both_moving, "both-moving", "-"},
+};
+
+const MeasureName& entry_of(Measure measure) {
+  return *std::find_if(kMeasures.begin(), kMeasures.end(), [&](const MeasureName& m) { return m.measure == measure; });
+}
+
+const std::vector<std::string> kClasses = {"square",   "granny",       "surgeons", "triple",
+                                           "overhand", "half-hitches", "unknot",   "other"};
+
+StepKind step_kind(const std::string& word) {
+  if (word == "loop") return StepKind::loop;
+  if (word == "pass") return StepKind::pass;
+  if (word == "lay") return StepKind::lay;
+  if (word == "tighten") return StepKind::tighten;
+  return StepKind::cut;
+}
+
+TaskStep parse_step(const YamlNode& node, int throws) {
+  TaskStep step;
+  step.kind = step_kind(node.choice("kind", {"loop", "pass", "lay", "tighten", "cut"}));
+  step.throw_number = step.kind == StepKind::cut ? 0 : node.integer("throw", 1, throws);
+  step.name = node.text("name");
+  step.hint = node.text("hint");
+  return step;
+}
+
+Measure parse_measure(const YamlNode& node) {
+  std::vector<std::string> names;
+  for (const MeasureName& m : kMeasures) names.push_back(m.name);
+  const std::string word = node.choice("measure", names);
+  return std::find_if(kMeasures.begin(), kMeasures.end(), [&](const MeasureName& m) { return word == m.name; })->measure;
+}
+
+Band parse_band(const YamlNode& node, const std::string& unit) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Band band{-kInfinity, -kInfinity, kInfinity, kInfinity};
+  if (node.has("full_from")) {
+    band.full_from = node.quantity("full_from", unit);
+    band.zero_below = node.quantity_or("zero_below", unit, band.full_from);
+  }
+  if (node.has("full_to")) {
+    band.full_to = node.quantity("full_to", unit);
+    band.zero_above = node.quantity_or("zero_above", unit, band.full_to);
+  }
+  if (!node.has("full_from") && !node.has("full_to")) node.refuse("full_to", "full_from or full_to, or both");
+  if (band.zero_below > band.full_from) node.refuse("zero_below", "at most full_from");
+  if (band.full_from > band.full_to) node.refuse("full_from", "at most full_to");
+  if (band.full_to > band.zero_above) node.refuse("zero_above", "at least full_to");
+  return band;
+}
+
+RubricItem parse_item(const YamlNode& node) {
+  RubricItem item;
+  item.measure = parse_measure(node);
+  item.title = node.text("title");
+  item.points = node.number("points", Range::positive());
+  item.source = node.text("source");
+  item.unit = unit_of(item.measure);
+  if (item.measure == Measure::knot_class) return item;
+  if (node.has("unit")) {
+    item.unit = node.text("unit");
+    bool same = false;
+    try {
+      same = dimension_of(item.unit) == dimension_of(unit_of(item.measure));
+    } catch (const InputError&) {
+      same = false;  // refused below, with the file's name
+    }
+    if (!same) node.refuse("unit", std::string("a unit like ") + unit_of(item.measure));
+  }
+  item.band = parse_band(node, item.unit);
+  return item;
+}
+
+Recognition parse_recognition(const YamlNode& node) {
+  Recognition r;
+  r.loop_turns = node.number_or("loop_turns", r.loop_turns, Range::between(0.25, 3.0));
+  r.tight_tension = node.quantity_or("tight_tension", "N", r.tight_tension, Range::positive());
+  r.tight_turns = node.number_or("tight_turns", r.tight_turns, Range::between(1.0, 20.0));
+  r.overload = node.number_or("overload", r.overload, Range::between(0.05, 1.0));
+  r.grip_limit = node.quantity_or("grip_limit", "N", r.grip_limit, Range::positive());
+  return r;
+}
+
+std::vector<std::string> parse_accept(const YamlNode& file) {
+  const std::vector<std::string> classes = file.texts("accept");
+  for (const std::string& word : classes) {
+    if (std::find(kClasses.begin(), kClasses.end(), word) == kClasses.end()) {
+      file.refuse("accept", "a list of knot classes: square, granny, surgeons, triple, overhand, half-hitches");
+    }
+  }
+  if (classes.empty()) file.refuse("accept", "at least one knot class");
+  return classes;
+}
+
+}  // namespace
+
+const char* name_of(Measure measure) { return entry_of(measure).name; }
+const char* unit_of(Measure measure) { return entry_of(measure).unit; }
+
+double Band::share(double value) const {
+  if (std::isnan(value)) return 0.0;
+  if (value < full_from) return value <= zero_below ? 0.0 : (value - zero_below) / (full_from - zero_below);
+  if (value > full_to) return value >= zero_above ? 0.0 : (zero_above - value) / (zero_above - full_to);
+  return 1.0;
+}
+
+double Task::max_total() const {
+  double sum = 0.0;
+  for (const RubricItem& item : rubric) sum += item.points;
+  return sum;
+}
+
+Task parse_task(const YamlNode& file) {
+  file.choice("format", {"filum-task/1"});
+  Task task;
+  task.name = file.text("name");
+  task.title = file.text("title");
+  task.description = file.text("description");
+  task.suture = file.text("suture");
+  task.demonstration_only = file.flag_or("demonstration_only", false);
+  task.time_limit = file.quantity("time_limit", "s", Range::between(1.0, 3600.0));
+  task.accept = parse_accept(file);
+  task.throws = file.integer("throws", 1, 4);
+  task.required_security = file.quantity_or("required_security", "N", 0.0, Range::not_negative());
+  if (file.has("recognition")) task.recognition = parse_recognition(file.map("recognition"));
+  for (const YamlNode& node : file.items("steps")) task.steps.push_back(parse_step(node, task.throws));
+  for (const YamlNode& node : file.items("rubric")) task.rubric.push_back(parse_item(node));
+  if (task.steps.empty()) file.refuse("steps", "at least one step");
+  if (task.rubric.empty()) file.refuse("rubric", "at least one line");
+  task.pass_points = file.number("pass_points", Range::between(0.0, task.max_total()));
+  file.finish();
+  return task;
+}
+
+Task load_task(const std::string& path) { return parse_task(YamlNode::load(path)); }
+
+}  // namespace filum

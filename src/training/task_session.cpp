@@ -1,0 +1,155 @@
+#include "training/task_session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "training/metrics.h"
+#include "training/score.h"
+#include "training/thread_part.h"
+
+namespace filum {
+namespace {
+
+double largest_tension(const Observation& o) {
+  double most = 0.0;
+  for (int k = 0; k + 1 < o.n_nodes; ++k) most = std::max(most, o.tension[static_cast<std::size_t>(k)]);
+  return most;
+}
+
+}  // namespace
+
+TaskSession::TaskSession(Task task, const SceneDescription& scene)
+    : task_(std::move(task)), scene_(scene), recogniser_(task_, scene_), log_(scene.n_tools, task_.time_limit) {
+  events_.reserve(kMaxEvents);
+}
+
+bool TaskSession::scoring_paused(const Observation& o) {
+  bool any = false, lost = false;
+  for (std::size_t t = 0; t < static_cast<std::size_t>(o.n_tools); ++t) {
+    const bool valid = o.tools[t].input_valid;
+    lost = lost || (driven_[t] && !valid);
+    any = any || valid;
+    driven_[t] = driven_[t] || valid;
+  }
+  return lost || !any;
+}
+
+void TaskSession::take_events(const Observation& o) {
+  for (int k = 0; k < o.n_events && events_.size() < kMaxEvents; ++k) {
+    const WorldEvent& e = o.events[static_cast<std::size_t>(k)];
+    events_.push_back({o.time, e.name, e.tool, e.value, e.unit, {}});
+  }
+}
+
+void TaskSession::take_sample(const Observation& o) {
+  tension_ = std::max(tension_, largest_tension(o));
+  const auto due = static_cast<double>(log_.size()) / kMetricRate;
+  if (elapsed_ + 1e-9 < due) return;
+  log_.add(o, tension_);
+  tension_ = 0.0;
+}
+
+void TaskSession::observe(const Observation& o) noexcept {
+  if (failed_) return;
+  try {
+    const bool first = !observed_;
+    observed_ = true;
+    const double dt = first ? 0.0 : std::max(0.0, o.time - previous_time_);
+    previous_time_ = o.time;
+    paused_ = scoring_paused(o);
+    last_ = o;
+    take_events(o);
+    if (done()) return;
+    if (!paused_) {
+      elapsed_ += dt;
+      take_sample(o);
+    }
+    recogniser_.observe(o, events_);
+  } catch (...) {
+    failed_ = true;
+  }
+}
+
+std::vector<TaskWarning> TaskSession::warnings() const {
+  std::vector<TaskWarning> list;
+  if (!observed_) return list;
+  if (failed_) list.push_back({"danger", "scoring-stopped", "The trainer ran out of memory: scoring has stopped."});
+  if (paused_) list.push_back({"danger", "input-lost", "An instrument's input is silent: scoring is paused."});
+  if (last_.broken) list.push_back({"danger", "thread-broken", "The thread has broken."});
+  const double strength = scene_.thread_strength;
+  if (!last_.broken && strength > 0.0 && largest_tension(last_) > task_.recognition.overload * strength) {
+    list.push_back({"danger", "thread-overload", "Pulling too hard: the thread is about to break."});
+  }
+  for (int t = 0; t < last_.n_tools; ++t) {
+    if (last_.tools[static_cast<std::size_t>(t)].grip_force <= task_.recognition.grip_limit) continue;
+    const std::string& name = scene_.tools[static_cast<std::size_t>(t)].name;
+    list.push_back({"warn", "grip", "Squeezing hard with " + name + "."});
+  }
+  const std::string& seen = recogniser_.knot_class();
+  const bool accepted = std::find(task_.accept.begin(), task_.accept.end(), seen) != task_.accept.end();
+  if (recogniser_.n_throws() >= task_.throws && !accepted) {
+    list.push_back({"warn", "wrong-knot", "The knot now is: " + seen + ". Asked for: " + task_.accept.front() + "."});
+  }
+  if (elapsed_ > task_.time_limit) {
+    list.push_back({"warn", "time-limit", "The time limit has passed: movements are no longer recorded."});
+  }
+  return list;
+}
+
+TaskStatus TaskSession::status() const {
+  TaskStatus s;
+  s.step_index = recogniser_.step();
+  for (const TaskStep& step : task_.steps) s.steps.push_back(step.name);
+  s.done = done();
+  if (s.done) {
+    s.step_name = "Done";
+    s.hint = "All steps are done.";
+  } else {
+    const TaskStep& step = task_.steps[static_cast<std::size_t>(s.step_index)];
+    s.step_name = step.name;
+    s.hint = step.hint;
+  }
+  s.elapsed = elapsed_;
+  s.paused = paused_ && observed_;
+  s.knot_class = recogniser_.knot_class();
+  s.warnings = warnings();
+  return s;
+}
+
+void TaskSession::measure_tails(const KnotReport& knot, Measures& measures) const {
+  measures.short_tail = measures.long_tail = std::numeric_limits<double>::quiet_NaN();
+  if (knot.core_begin < 0 || last_.cut_edge_low < 0 || last_.cut_edge_high < 0) return;
+  const ThreadPart part = tied_part(last_);
+  const double low = length_between(last_, part.first, part.first + knot.core_begin);
+  const double high = length_between(last_, part.first + knot.core_end, part.last);
+  measures.short_tail = std::min(low, high);
+  measures.long_tail = std::max(low, high);
+}
+
+Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
+  Result r;
+  r.task = task_.name;
+  r.title = task_.title;
+  r.finished = done();
+  r.seconds = elapsed_;
+  r.security = security;
+  r.events = events_;
+  if (observed_) {
+    const ThreadPart part = tied_part(last_);
+    const Points nodes = last_.positions.middleCols(part.first, std::max(0, part.nodes()));
+    r.knot = classify_knot(nodes, last_.radius, scene_.has_post ? &scene_.post : nullptr);
+    if (!scene_.has_post) r.knot.encloses_post = true;  // nothing to enclose
+  }
+  r.measures = measure(log_, events_, scene_.thread_strength);
+  r.measures.seconds = elapsed_;
+  r.measures.throws = r.knot.n_throws;
+  measure_tails(r.knot, r.measures);
+  score(task_, last_.broken, r);
+  if (failed_) r.verdict.push_back("scoring stopped early: out of memory");
+  add_curves(log_, scene_, r);
+  return r;
+}
+
+}  // namespace filum

@@ -1,0 +1,75 @@
+#pragma once
+// One run of a task: watches observations, says where the trainee is, and gives the result. Call observe() after every step
+// of the world, in order. It is cheap (sampling into reserved memory; the knot is looked at five times a second of scene time,
+// below a millisecond each for a thread of 200 nodes); it neither throws nor blocks. Scored time stands still while an
+// instrument that was driven before is not (input_valid false), or none is. After the last step scoring stops; only the knot
+// is still taken from the newest observation.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "training/result.h"
+#include "training/series_log.h"
+#include "training/step_recogniser.h"
+#include "training/task.h"
+
+namespace filum {
+
+struct TaskWarning {
+  std::string level;  // "info" | "warn" | "danger"
+  std::string code;   // "input-lost", "thread-overload", "grip", "wrong-knot", "thread-broken", "time-limit"
+  std::string text;
+};
+
+struct TaskStatus {
+  int step_index = 0;                 // equals the number of steps when done
+  std::string step_name;
+  std::vector<std::string> steps;     // names of all
+  std::string hint;
+  double elapsed = 0.0;               // [s], scored time
+  bool done = false;
+  bool paused = false;                // scoring stands still
+  std::string knot_class;             // as seen now
+  std::vector<TaskWarning> warnings;  // in force now
+};
+
+class TaskSession {
+ public:
+  TaskSession(Task task, const SceneDescription& scene);
+
+  void observe(const Observation& o) noexcept;
+  TaskStatus status() const;
+  /// Events since the start, in order; at most kMaxEvents, later ones are counted only.
+  const std::vector<TaskEvent>& events() const { return events_; }
+  bool done() const { return recogniser_.done(); }
+  const Task& task() const { return task_; }
+
+  /// Classifies the knot anew and scores. May be called again, e.g. once the security test has been made.
+  Result finish(const std::optional<SecurityTest>& security = std::nullopt) const;
+
+  static constexpr std::size_t kMaxEvents = 4096;
+
+ private:
+  bool scoring_paused(const Observation& o);
+  void take_events(const Observation& o);
+  void take_sample(const Observation& o);
+  std::vector<TaskWarning> warnings() const;
+  void measure_tails(const KnotReport& knot, Measures& measures) const;
+
+  Task task_;
+  SceneDescription scene_;
+  StepRecogniser recogniser_;
+  SeriesLog log_;
+  std::vector<TaskEvent> events_;
+  Observation last_;             // newest, at kMetricRate
+  bool observed_ = false;
+  bool paused_ = true;
+  bool failed_ = false;          // watching failed (out of memory): scoring stopped, said in the result
+  std::array<bool, 3> driven_{};  // instrument has had a valid input
+  double previous_time_ = -1.0;  // [s]
+  double elapsed_ = 0.0;         // [s], scored
+  double tension_ = 0.0;         // [N], largest since the last sample
+};
+
+}  // namespace filum

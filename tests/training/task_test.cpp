@@ -1,0 +1,102 @@
+#include "training/task.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+const std::string kMinimal = R"(format: filum-task/1
+name: t
+title: T
+description: D
+suture: 10-0-nylon
+time_limit: "60 s"
+accept: [square]
+throws: 2
+pass_points: "5"
+steps:
+  - { kind: loop, throw: 1, name: a, hint: b }
+rubric:
+  - { measure: time, title: Time, points: "10", unit: s, full_to: "25 s", zero_above: "75 s", source: MI4 }
+)";
+
+std::string with(const std::string& from, const std::string& to) {
+  std::string text = kMinimal;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// Field named by the error that the text gives; empty if it gives none.
+std::string refused(const std::string& text) {
+  try {
+    parse_task(YamlNode::parse(text, "t.yaml"));
+  } catch (const InputError& e) {
+    EXPECT_NE(e.file.find("t.yaml"), std::string::npos);
+    return e.field;
+  }
+  return "";
+}
+
+TEST(Task, TheTasksOfTheCurriculumLoad) {
+  for (const std::string name : {"knot-square", "knot-surgeons", "knot-granny"}) {
+    const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + name + "/task.yaml");
+    EXPECT_EQ(task.name, name);
+    EXPECT_EQ(task.steps.size(), 9u);
+    EXPECT_NEAR(task.max_total(), 100.0, 1e-12);
+    EXPECT_EQ(task.demonstration_only, name == "knot-granny");
+    for (const RubricItem& item : task.rubric) EXPECT_FALSE(item.source.empty()) << item.title;
+    for (const TaskStep& step : task.steps) EXPECT_FALSE(step.hint.empty()) << step.name;
+  }
+}
+
+TEST(Task, ReadsUnitsIntoSi) {
+  const Task task = parse_task(YamlNode::parse(kMinimal, "t.yaml"));
+  EXPECT_EQ(task.time_limit, 60.0);
+  ASSERT_EQ(task.rubric.size(), 1u);
+  EXPECT_EQ(task.rubric[0].band.full_to, 25.0);
+  EXPECT_EQ(task.steps[0].kind, StepKind::loop);
+}
+
+TEST(Task, RefusesWhatItDoesNotKnowAndNamesIt) {
+  EXPECT_EQ(refused(kMinimal), "");
+  EXPECT_EQ(refused(with("filum-task/1", "filum-task/9")), "format");
+  EXPECT_EQ(refused(with("throws: 2", "throws: 2\ncolour: red")), "colour");
+  EXPECT_EQ(refused(with("[square]", "[bowline]")), "accept");
+  EXPECT_EQ(refused(with("[square]", "[]")), "accept");
+  EXPECT_EQ(refused(with("60 s", "60 mm")), "time_limit");
+  EXPECT_EQ(refused(with("unit: s", "unit: mm")), "rubric[0].unit");
+  EXPECT_EQ(refused(with("unit: s", "unit: parsec")), "rubric[0].unit");
+  EXPECT_EQ(refused(with("kind: loop", "kind: jump")), "steps[0].kind");
+  EXPECT_EQ(refused(with("throw: 1", "throw: 3")), "steps[0].throw");
+  EXPECT_EQ(refused(with("measure: time", "measure: charm")), "rubric[0].measure");
+  EXPECT_EQ(refused(with("\"75 s\"", "\"5 s\"")), "rubric[0].zero_above");
+  EXPECT_EQ(refused(with("pass_points: \"5\"", "pass_points: \"50\"")), "pass_points");
+  EXPECT_EQ(refused(with("source: MI4", "sauce: MI4")), "rubric[0].source");
+}
+
+TEST(Task, BandIsFullInsideZeroOutsideAndStraightBetween) {
+  const Band tails{0.2, 0.8, 4.0, 8.0};
+  EXPECT_EQ(tails.share(0.1), 0.0);
+  EXPECT_EQ(tails.share(0.2), 0.0);
+  EXPECT_NEAR(tails.share(0.5), 0.5, 1e-12);
+  EXPECT_EQ(tails.share(0.8), 1.0);
+  EXPECT_EQ(tails.share(4.0), 1.0);
+  EXPECT_NEAR(tails.share(7.0), 0.25, 1e-12);
+  EXPECT_EQ(tails.share(9.0), 0.0);
+  EXPECT_EQ(tails.share(std::nan("")), 0.0);
+  const double inf = std::numeric_limits<double>::infinity();
+  const Band step{-inf, -inf, 0.0, 0.0};
+  EXPECT_EQ(step.share(-5.0), 1.0);
+  EXPECT_EQ(step.share(0.0), 1.0);
+  EXPECT_EQ(step.share(0.1), 0.0);
+}
+
+}  // namespace
+}  // namespace filum
