@@ -30,6 +30,7 @@ export class App {
   replay: ReplayState | null = null;
   readonly sound = new Sound();
   readonly help = new Help();
+  private hadControl = false;
   private view: FieldView | null = null;
   private page: Page | null = null;
   private readonly main = h("main", { id: "main", tabindex: -1 });
@@ -99,6 +100,8 @@ export class App {
       case "scene":
         this.scene = message;
         this.frame = null;
+        this.result = null;
+        this.replay = null;
         this.view?.describe(message);
         break;
       case "frame":
@@ -116,6 +119,9 @@ export class App {
 
   private sessionChanged(message: SessionState): void {
     this.session = message;
+    if (message.in_control) this.hadControl = true;
+    else if (message.controller > 0) this.hadControl = false;
+    else if (this.hadControl && (message.state === "running" || message.state === "replay")) this.send({ type: "take_control" }); // back after a lost line
     this.recording.hidden = !message.recording;
     if (message.warning) this.notify("danger", "session", message.warning);
     else this.dropNotice("session");

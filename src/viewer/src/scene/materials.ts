@@ -62,7 +62,7 @@ export function paintedMaterials(): Materials {
     grip: painted([0, "#fff3cf"], [0.25, "#c7a868"], [0.6, "#7a633a"], [1, "#33280f"]),
     bands: [lit("#2e83e6", "#0a2f5e"), lit("#f0a52e", "#6b4000"), lit("#a258bd", "#35103f")],
     post: painted([0, "#fff8ec"], [0.3, "#ead4b8"], [0.7, "#b79c7c"], [1, "#6b5640"]),
-    sheet: new THREE.MeshBasicMaterial({ map: sheetTextures(kSheet / 5).map, color: 0xd4d4d4, toneMapped: false }),
+    sheet: new THREE.MeshBasicMaterial({ map: sheetTextures(kSheet / 5).map, color: new THREE.Color(1.75, 1.55, 1.55), toneMapped: false }),
     thread: painted([0, "#8d97ab"], [0.2, "#2b3347"], [0.5, "#10141f"], [1, "#05070b"]),
   };
 }

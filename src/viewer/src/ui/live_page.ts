@@ -21,6 +21,7 @@ export class LivePage implements Page {
   private readonly right = h("aside", { class: "right" });
   private readonly over = h("div", { class: "over" });
   private readonly hand = h("output", { class: "hand", "aria-live": "polite" }, "");
+  private readonly take = h("button", { class: "take", hidden: true, onclick: () => { this.app.send({ type: "take_control" }); this.focus(); } }, "Take control");
   private readonly events = h("ul", { class: "events", "aria-label": "What happened" });
   private readonly warnings = new WarningList();
   private readonly health = new HealthPanel();
@@ -41,9 +42,10 @@ export class LivePage implements Page {
     this.pointer.onswitch = () => this.showHand();
     this.unhook = microscopeMouse(view, () => !this.pointer.live);
     this.warnings.onnew = (level) => app.sound.play(level);
-    this.element.append(this.left, h("div", { class: "middle" }, view.element, this.hand, this.warnings.element, this.over), this.right, opticsBar(view));
+    this.element.append(this.left, h("div", { class: "middle" }, view.element, h("div", { class: "handbox" }, this.hand, this.take), this.warnings.element, this.over), this.right, opticsBar(view));
     this.describe();
     this.showSession();
+    if (app.session?.state === "ended" && app.result) this.showEnd();
     view.start();
   }
 
@@ -114,7 +116,7 @@ export class LivePage implements Page {
     }
     if (session?.state === "replay" && this.app.replay) this.app.go(`#/replay/${encodeURIComponent(this.app.replay.session)}`);
     const others = session !== null && session.state === "running" && !session.in_control;
-    this.element.classList.toggle("watching", others);
+    this.take.hidden = !others;
     this.showHand();
   }
 

@@ -109,7 +109,7 @@ export function knotPicture(knot: string, label: string, tools: boolean): SVGEle
   const post = `<ellipse cx="3" cy="${base + 46}" rx="22" ry="5" fill="#00000038"/>
     <circle cy="${base + 30}" r="13" fill="#POST" stroke="#6d5a46" stroke-width=".8"/>`;
   const round = `<path d="M-15 ${base + 30}A15 15 0 0 0 0 ${base + 45}" fill="none" stroke="#12324a" stroke-width="4.2"/><path d="M15 ${base + 30}A15 15 0 0 1 0 ${base + 45}" fill="none" stroke="#7a2b16" stroke-width="4.2"/>`;
-  const knotPaths = paint([{ points: left, colour: "#12324a" }, { points: right, colour: "#7a2b16" }], 4.2, "#0a2a2caa");
+  const knotPaths = paint([{ points: left, colour: "#12324a" }, { points: right, colour: "#7a2b16" }], 4.2, "#2c5556");
   const top = base - (throws.length - 1) * kSpacing - 19;
   const jaws = tools ? `<g stroke="#2b333b" stroke-width=".6">
     <path d="M-40 ${top - 2}L-64 ${top - 20}L-64 ${top - 12}L-41 ${top + 1}Z" fill="#METAL"/><path d="M-40 ${top + 3}L-64 ${top + 2}L-64 ${top - 7}L-41 ${top + 0}Z" fill="#METAL"/>

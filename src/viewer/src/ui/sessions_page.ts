@@ -19,24 +19,25 @@ export class SessionsPage implements Page {
   private async load(): Promise<void> {
     try {
       const { sessions: list } = await sessions();
-      this.element.replaceChildren(h("h1", {}, "Sessions"), list.length > 0 ? this.table(list) : h("p", {}, "Nothing has been recorded yet."));
+      this.element.replaceChildren(h("h1", {}, "Sessions"), list.length > 0 ? sessionTable(list) : h("p", {}, "Nothing has been recorded yet."));
     } catch (error) {
       this.element.replaceChildren(h("h1", {}, "Sessions"), h("p", { role: "alert" }, `The list cannot be read: ${(error as Error).message}.`),
         h("button", { onclick: () => void this.load() }, "Try again"));
     }
   }
+}
 
-  private table(list: SessionInfo[]): HTMLElement {
-    return h("div", { class: "panel" }, h("table", {},
-      h("thead", {}, h("tr", {}, ...["Started", "Task", "Input", "Code", "Time", "Points", "Verdict", ""].map((name) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, ...list.map((one) => this.row(one)))));
-  }
+export function sessionTable(list: SessionInfo[]): HTMLElement {
+  return h("div", { class: "panel" }, h("table", {},
+    h("thead", {}, h("tr", {}, ...["Started", "Task", "Input", "Code", "Time", "Points", "Verdict", ""].map((name) => h("th", { scope: "col" }, name)))),
+    h("tbody", {}, ...list.map(row))));
+}
 
-  private row(one: SessionInfo): HTMLElement {
-    const verdict = one.passed === null ? (one.finished ? "not scored" : "interrupted") : one.passed ? "✓ passed" : "✕ not passed";
-    const id = encodeURIComponent(one.id);
-    return h("tr", { "data-session": one.id }, h("td", {}, day(one.started)), h("th", { scope: "row" }, one.title || one.task), h("td", {}, kInputNames[one.input] ?? one.input), h("td", {}, one.code),
-      h("td", { class: "number" }, clock(one.seconds)), h("td", { class: "number" }, one.total === null ? "–" : one.total.toFixed(0)), h("td", {}, verdict),
-      h("td", { class: "links" }, h("a", { class: "button", href: `#/replay/${id}` }, "Replay"), one.total === null ? null : h("a", { class: "button", href: `#/result/${id}` }, "Result")));
-  }
+function row(one: SessionInfo): HTMLElement {
+  const verdict = one.passed === null ? (one.finished ? "not scored" : "interrupted") : one.passed ? "✓ passed" : "✕ not passed";
+  const id = encodeURIComponent(one.id), title = one.title || one.task;
+  return h("tr", { "data-session": one.id }, h("td", {}, day(one.started)), h("th", { scope: "row" }, title), h("td", {}, kInputNames[one.input] ?? one.input), h("td", {}, one.code),
+    h("td", { class: "number" }, clock(one.seconds)), h("td", { class: "number" }, one.total === null ? "–" : one.total.toFixed(0)), h("td", {}, verdict),
+    h("td", { class: "links" }, h("a", { class: "button", href: `#/replay/${id}`, "aria-label": `Replay ${title}` }, "Replay"),
+      one.total === null ? null : h("a", { class: "button", href: `#/result/${id}`, "aria-label": `Result of ${title}` }, "Result")));
 }

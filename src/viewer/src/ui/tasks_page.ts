@@ -1,8 +1,10 @@
 // First page: the tasks with their pictures, and how to start one.
 import type { App, Page } from "../app";
 import type { InputKind, ServerMessage, TaskInfo } from "../messages";
+import { sessions } from "../net/api";
 import { clear, h, setText } from "./dom";
 import { taskPicture } from "./pictures";
+import { sessionTable } from "./sessions_page";
 
 const kInputs: Record<InputKind, [string, string]> = {
   pointer: ["Mouse, keyboard or gamepad", "You move both instruments from this browser."],
@@ -15,12 +17,14 @@ export class TasksPage implements Page {
   readonly element = h("div", { class: "page tasks" });
   private readonly cards = h("ul", { class: "cards" });
   private readonly running = h("div", { class: "running" });
+  private readonly recent = h("section", { class: "recent" });
   private readonly dialog = h("dialog", { class: "start", "aria-labelledby": "start-title" });
 
   constructor(private readonly app: App) {
-    this.element.append(h("h1", {}, "Choose a task"), this.running, this.cards, this.dialog);
+    this.element.append(h("h1", {}, "Choose a task"), this.running, this.cards, this.recent, this.dialog);
     this.showTasks();
     this.showRunning();
+    void this.showRecent();
   }
 
   onmessage(message: ServerMessage): void {
@@ -38,6 +42,12 @@ export class TasksPage implements Page {
         task.demonstration ? h("span", { class: "tag" }, "demonstration only") : null);
       this.cards.append(h("li", {}, button));
     }
+  }
+
+  /// The list is a convenience here; where it cannot be had the sessions page says why.
+  private async showRecent(): Promise<void> {
+    const list = await sessions().then((answer) => answer.sessions, () => []);
+    if (list.length > 0) this.recent.replaceChildren(h("h2", {}, "Latest sessions"), sessionTable(list.slice(0, 5)));
   }
 
   private showRunning(): void {

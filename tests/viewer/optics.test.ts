@@ -1,0 +1,50 @@
+import { blurDiameter, eyeAt, fieldDiameter, kWorkingDistance, openingAngle, scaleBar, zoomed, type OpticsState } from "@viewer/scene/optics";
+
+const optics = (change: Partial<OpticsState> = {}): OpticsState => ({ magnification: 10, focus: 3, centre: [1, 2], tilt: 0.2, eyeDistance: 22, ...change });
+
+describe("optics", () => {
+  it("shows a field of 20 mm at 10x and 5 mm at 40x", () => {
+    expect(fieldDiameter(10)).toBeCloseTo(20);
+    expect(fieldDiameter(40)).toBeCloseTo(5);
+    expect(2 * kWorkingDistance * Math.tan(openingAngle(10) / 2)).toBeCloseTo(20);
+  });
+
+  it("zooms by equal ratios within 5x to 40x", () => {
+    expect(zoomed(10, 1) / 10).toBeCloseTo(zoomed(20, 1) / 20);
+    expect(zoomed(10, 100)).toBe(40);
+    expect(zoomed(10, -100)).toBe(5);
+    expect(zoomed(zoomed(12, 3), -3)).toBeCloseTo(12);
+  });
+
+  it("blurs nothing in focus and more with distance", () => {
+    expect(blurDiameter(0)).toBe(0);
+    expect(blurDiameter(2)).toBeGreaterThan(blurDiameter(1));
+    expect(blurDiameter(-1)).toBeGreaterThan(0);
+  });
+
+  it("keeps the eye at the working distance from what is in focus", () => {
+    for (const side of [-1, 0, 1] as const) {
+      const eye = eyeAt(optics(), side);
+      expect(Math.hypot(...eye.position.map((v, k) => v - eye.target[k]))).toBeCloseTo(kWorkingDistance);
+    }
+  });
+
+  it("makes both eyes agree in the focal plane and look parallel", () => {
+    const left = eyeAt(optics(), -1), right = eyeAt(optics(), 1);
+    expect(right.position[0] - left.position[0]).toBeCloseTo(22);
+    // the centre of the field, seen from a parallel camera, lies off its axis by -base; the shift takes exactly that back
+    const field = fieldDiameter(10);
+    for (const eye of [left, right]) expect((optics().centre[0] - eye.target[0]) / field).toBeCloseTo(eye.shift);
+    const direction = (eye: typeof left) => eye.target.map((v, k) => v - eye.position[k]);
+    direction(left).forEach((v, k) => expect(v).toBeCloseTo(direction(right)[k]));
+  });
+
+  it("names a round scale bar that fits the field", () => {
+    for (const magnification of [5, 7, 10, 16, 25, 40]) {
+      const bar = scaleBar(magnification), share = bar / fieldDiameter(magnification);
+      expect(share).toBeGreaterThan(0.07);
+      expect(share).toBeLessThanOrEqual(0.2 + 1e-9);
+      expect([1, 2, 5]).toContain(Math.round(bar / Math.pow(10, Math.floor(Math.log10(bar) + 1e-9))));
+    }
+  });
+});
