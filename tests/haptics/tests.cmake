@@ -1,0 +1,3 @@
+foreach(name hand_coupling haptic_loop input_merge period_stats)
+  filum_test(haptics/${name})
+endforeach()
