@@ -1,0 +1,110 @@
+import { clock, milliNewton, quantity } from "@viewer/ui/format";
+import { barScale, ForcePanel, StepPanel, tensionZone, WarningList } from "@viewer/ui/panels";
+import { knotPicture, kThrows, strands } from "@viewer/ui/pictures";
+import { chartsOf } from "@viewer/ui/plots";
+import { kShortcuts } from "@viewer/input/shortcuts";
+import type { Frame, Scene } from "@viewer/messages";
+import { frameAt as sample, kScene } from "./sample_frames.mjs";
+
+const scene = kScene as Scene, frameAt = sample as (time: number, id: number, duration: number) => Frame;
+
+describe("numbers", () => {
+  it("carry their unit", () => {
+    expect(milliNewton(0.1234)).toBe("123 mN");
+    expect(milliNewton(0.0042)).toBe("4.2 mN");
+    expect(quantity(0.0026, "m")).toBe("2.60 mm");
+    expect(quantity(null, "N")).toBe("not measured");
+    expect(quantity(2, "-")).toBe("2");
+    expect(quantity("square", "-")).toBe("square");
+  });
+  it("show time as minutes and seconds", () => {
+    expect(clock(0)).toBe("0:00.0");
+    expect(clock(83.27)).toBe("1:23.2");
+  });
+});
+
+describe("force bars", () => {
+  it("tell zones of the thread's strength", () => {
+    expect(tensionZone(0.05, 0.15)).toBe("ok");
+    expect(tensionZone(0.1, 0.15)).toBe("high");
+    expect(tensionZone(0.14, 0.15)).toBe("near-break");
+    expect(tensionZone(0.14, 0)).toBe("ok");
+  });
+  it("have a scale that always holds the value", () => {
+    for (const force of [0.01, 0.2, 0.21, 1, 7]) expect(barScale(force)).toBeGreaterThanOrEqual(force);
+  });
+  it("say the largest tension of the frame in words, not by colour alone", () => {
+    const panel = new ForcePanel(scene), frame = { ...frameAt(0, 1, 10), tension: [0.01, 0.14, 0.02] };
+    panel.show(frame, 0);
+    const meter = panel.element.querySelector(".meter")!;
+    expect(meter.getAttribute("aria-valuetext")).toBe("Thread tension 140 mN · near limit");
+    expect(meter.getAttribute("data-zone")).toBe("near-break");
+    panel.show({ ...frame, tools: frame.tools.map((tool) => ({ ...tool, input_valid: false })) }, 0);
+    expect(panel.element.textContent).toContain("no input");
+  });
+});
+
+describe("steps", () => {
+  it("mark done, current and coming steps with a sign each", () => {
+    const panel = new StepPanel("Square knot"), task = { ...frameAt(4, 1, 10).task!, step_index: 1, steps: ["grasp", "loop", "cut"] };
+    panel.show(task, 4);
+    expect([...panel.element.querySelectorAll(".mark")].map((mark) => mark.textContent)).toEqual(["✓", "▶", "3"]);
+    expect(panel.element.querySelector("[aria-current=step]")!.textContent).toContain("Loop");
+    expect(panel.element.querySelector(".hint")!.textContent).toBe(task.hint);
+  });
+});
+
+describe("warnings", () => {
+  it("differ by word and outline, and sound once", () => {
+    const list = new WarningList(), heard: string[] = [];
+    list.onnew = (level) => heard.push(level);
+    const three = (["info", "warn", "danger"] as const).map((level) => ({ level, text: `text ${level}`, code: level }));
+    list.show(three);
+    list.show(three);
+    expect(heard).toEqual(["info", "warn", "danger"]);
+    const shown = [...list.element.children];
+    expect(shown.map((one) => one.querySelector("strong")!.textContent)).toEqual(["Note", "Caution", "Stop"]);
+    expect(new Set(shown.map((one) => one.querySelector("svg")!.innerHTML)).size).toBe(3);
+    list.show([]);
+    expect(list.element.children.length).toBe(0);
+    list.show(three.slice(1, 2));
+    expect(heard.length).toBe(4);
+  });
+});
+
+describe("knot pictures", () => {
+  /// Sign of each crossing between the strands, row by row from the post: the sense in which a throw turns.
+  const senses = (knot: string) => kThrows[knot].map((one) => one.sense);
+  it("tell a square knot from a granny", () => {
+    expect(senses("square")).toEqual([1, -1]);
+    expect(senses("granny")).toEqual([1, 1]);
+    expect(knotPicture("square", "s", false).innerHTML).not.toBe(knotPicture("granny", "s", false).innerHTML);
+  });
+  it("draw two strands that end on both sides of every throw", () => {
+    for (const [name, throws] of Object.entries(kThrows)) {
+      const [left, right] = strands(throws, 0);
+      expect(left[0][0]).toBeLessThan(0);
+      expect(right[0][0]).toBeGreaterThan(0);
+      const crossings = throws.reduce((sum, one) => sum + one.crossings, 0);
+      const swapped = crossings % 2 === 1;
+      expect(Math.sign(left[left.length - 1][0]), name).toBe(swapped ? 1 : -1);
+    }
+  });
+});
+
+describe("plots", () => {
+  it("put curves of one unit on one axis, scaled to the shown unit, without inventing values", () => {
+    const charts = chartsOf([
+      { name: "a", title: "A", unit: "N", time: [0, 1], value: [0.1, 0.2] }, { name: "b", title: "B", unit: "N", time: [1, 2], value: [0.3, 0.4] },
+      { name: "v", title: "V", unit: "m/s", time: [0], value: [0.5] }]);
+    expect(charts.map((chart) => chart.unit)).toEqual(["mN", "mm/s"]);
+    expect(charts[0].columns).toEqual([[0, 1, 2], [100, 200, null], [null, 300, 400]]);
+  });
+});
+
+it("no key is listed twice for the same place", () => {
+  for (const group of kShortcuts) {
+    const keys = group.shortcuts.map((one) => one.keys);
+    expect(new Set(keys).size).toBe(keys.length);
+  }
+});
