@@ -33,12 +33,14 @@ export class PointerInput {
   private readonly last: Pointer[] = [];
   private readonly lastSent: number[] = [];
   private shift = false;
+  private entered = false; // the mouse has just come in: the way it came from outside is no movement of the hand
   private padButtons = 0; // what the gamepad held last
   private previous = performance.now();
   private timer: ReturnType<typeof setInterval> | undefined;
 
   constructor(private readonly surface: HTMLElement, private readonly field: Field, private readonly send: (message: Pointer) => boolean) {
     const options = { signal: this.cleanup.signal };
+    surface.addEventListener("pointerenter", () => { this.entered = true; }, options);
     surface.addEventListener("pointermove", (event) => this.moved(event), options);
     surface.addEventListener("pointerdown", (event) => this.button(event, true), options);
     surface.addEventListener("pointerup", (event) => this.button(event, false), options);
@@ -82,6 +84,7 @@ export class PointerInput {
 
   private moved(event: PointerEvent): void {
     if (!this.live || event.pointerType === "touch") return;
+    if (this.entered) { this.entered = false; return; }
     const { active } = this.hands;
     const dx = event.movementX, dy = event.movementY;
     if ((event.buttons & 2) !== 0) this.hands.roll(active, -0.01 * dx);

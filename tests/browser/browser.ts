@@ -1,0 +1,87 @@
+// Starts Chromium and the real trainer for the browser tests.
+import { spawn, type ChildProcess } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { chromium, type BrowserContext, type Page } from "playwright-core";
+
+const kFlags = ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
+  "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+
+export interface Opened { page: Page; trouble: string[]; close(): Promise<void> }
+
+/// A page in a browser of its own with a fresh profile. `trouble` collects errors that a user could only find in the console.
+export async function openPage(address: string): Promise<Opened> {
+  const profile = mkdtempSync(join(tmpdir(), "filum-chromium-"));
+  const context: BrowserContext = await chromium.launchPersistentContext(profile, {
+    executablePath: process.env.FILUM_CHROMIUM ?? "/usr/bin/chromium", headless: true, args: kFlags, viewport: { width: 1280, height: 760 },
+  });
+  const page = context.pages()[0] ?? (await context.newPage());
+  page.setDefaultTimeout(120_000);
+  const trouble: string[] = [];
+  page.on("pageerror", (error) => trouble.push(error.message));
+  page.on("console", (message) => {
+    if (message.type() === "error" && !/WebSocket connection|ERR_CONNECTION/.test(message.text())) trouble.push(message.text());
+  });
+  await page.goto(address);
+  return { page, trouble, close: async () => { await context.close(); rmSync(profile, { recursive: true, force: true }); } };
+}
+
+export const trainerProgram = process.env.FILUM_BIN ?? "";
+export const hasTrainer = trainerProgram !== "" && existsSync(trainerProgram);
+
+export interface Trainer { address: string; folder: string; stop(): Promise<void> }
+
+/// Starts the real program on a free port with a store of its own and waits for the address it prints.
+export async function startTrainer(): Promise<Trainer> {
+  const folder = mkdtempSync(join(tmpdir(), "filum-store-"));
+  const child: ChildProcess = spawn(resolve(trainerProgram), ["train", "--port", "0"], {
+    env: { ...process.env, FILUM_STORE: folder, XDG_DATA_HOME: folder, HOME: folder }, stdio: ["ignore", "pipe", "pipe"],
+  });
+  let said = "";
+  const address = await new Promise<string>((done, fail) => {
+    const listen = (data: Buffer) => {
+      said += String(data);
+      const found = /http:\/\/127\.0\.0\.1:\d+\//.exec(said);
+      if (found) done(found[0]);
+    };
+    child.stdout!.on("data", listen);
+    child.stderr!.on("data", listen);
+    child.on("exit", (code) => fail(new Error(`the trainer ended with ${code} before it printed its address:\n${said}`)));
+  });
+  const stop = () => new Promise<void>((done) => {
+    const finish = () => { rmSync(folder, { recursive: true, force: true }); done(); };
+    if (child.exitCode !== null) { finish(); return; }
+    child.removeAllListeners("exit");
+    child.on("exit", finish);
+    child.kill("SIGTERM");
+  });
+  return { address, folder, stop };
+}
+
+/// Waits until `read` gives something that `good` accepts, and returns it.
+export async function until<T>(read: () => Promise<T> | T, good: (value: T) => boolean, what: string, seconds = 120): Promise<T> {
+  const end = Date.now() + 1000 * seconds;
+  for (;;) {
+    const value = await read();
+    if (good(value)) return value;
+    if (Date.now() > end) throw new Error(`${what}: still ${JSON.stringify(value)} after ${seconds} s`);
+    await new Promise((done) => setTimeout(done, 100));
+  }
+}
+
+/// How many distinct colours the field shows: an empty one has few.
+export async function fieldColours(page: Page): Promise<number> {
+  const png = await page.locator(".surface").screenshot({ timeout: 120_000 });
+  return page.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const canvas = new OffscreenCanvas(image.width, image.height), g = canvas.getContext("2d")!;
+    g.drawImage(image, 0, 0);
+    const { data } = g.getImageData(0, 0, image.width, image.height);
+    const seen = new Set<number>();
+    for (let i = 0; i < data.length; i += 4 * 7) seen.add(((data[i] >> 3) << 10) | ((data[i + 1] >> 3) << 5) | (data[i + 2] >> 3));
+    return seen.size;
+  }, png.toString("base64"));
+}

@@ -1,0 +1,175 @@
+// The viewer alone in Chromium, against the make-believe trainer: what must hold for any frames, and states that are rare.
+import { fieldColours, openPage, until, type Opened } from "./browser";
+import { startMock } from "./mock_trainer.mjs";
+
+type Mock = Awaited<ReturnType<typeof startMock>>;
+
+let mock: Mock, opened: Opened;
+beforeEach(async () => { mock = await startMock({ duration: 600 }); opened = await openPage(mock.address); });
+afterEach(async () => { await opened.close(); await mock.close(); });
+
+async function start(input: "demo" | "pointer"): Promise<void> {
+  const { page } = opened;
+  await page.click('button[data-task="knot-square"]');
+  await page.check(`input[value=${input}]`);
+  await page.click("button[type=submit]");
+  await page.waitForSelector(".steps li");
+}
+
+const magnification = () => opened.page.locator(".optics output").first().textContent();
+
+it("draws the scene, acknowledges frames and chooses the lowest quality without a graphics chip", async () => {
+  await start("demo");
+  await until(() => mock.state.acks, (acks) => acks > 10, "acknowledged frames");
+  expect(await fieldColours(opened.page)).toBeGreaterThan(60);
+  expect(await opened.page.textContent(".rate")).toContain("no graphics chip");
+  expect(opened.trouble).toEqual([]);
+});
+
+it("shows every stereo mode, reticle and quality without an error", async () => {
+  const { page, trouble } = opened;
+  await start("demo");
+  mock.state.hold = true; // one still frame: the expensive levels are slow on a processor
+  for (const [quality, keys] of [["auto", "123"], ["medium", "123"], ["high", "1"]]) {
+    await page.selectOption(".optics select", quality);
+    for (const key of keys) {
+      await page.locator(".surface").focus();
+      await page.keyboard.press(key);
+      expect(await fieldColours(page), `${quality} ${key}`).toBeGreaterThan(40);
+    }
+  }
+  const box = async () => (await page.locator(".surface").boundingBox())!;
+  await page.keyboard.press("2");
+  expect((await box()).width / (await box()).height).toBeCloseTo(2, 1);
+  await page.keyboard.press("1");
+  expect((await box()).width / (await box()).height).toBeCloseTo(1, 1);
+  await page.keyboard.press("g");
+  expect(await page.locator(".reticle").first().isVisible()).toBe(false);
+  expect(trouble).toEqual([]);
+});
+
+it("zooms and focuses by keyboard within its range", async () => {
+  const { page } = opened;
+  await start("demo");
+  for (let i = 0; i < 20; ++i) await page.keyboard.press("+");
+  expect(await magnification()).toBe("40.0×");
+  for (let i = 0; i < 40; ++i) await page.keyboard.press("-");
+  expect(await magnification()).toBe("5.0×");
+  await page.keyboard.press("0");
+  expect(await magnification()).toBe("10.0×");
+});
+
+it("sends poses of the active hand from the mouse, and of both hands from the keyboard", async () => {
+  const { page } = opened;
+  await start("pointer");
+  await page.locator(".surface").focus();
+  const last = (tool: number) => mock.state.pointers.filter((one: { tool: number }) => one.tool === tool).at(-1) as { position: number[]; grip: number; quaternion: number[]; buttons: number } | undefined;
+  await until(() => last(0) !== undefined && last(1) !== undefined, Boolean, "poses of both hands");
+  const first = [last(0)!, last(1)!];
+  await page.keyboard.down("d"); // left hand to the right
+  await until(() => last(0)!.position[0], (x) => x > first[0].position[0] + 1e-4, "left hand by D");
+  await page.keyboard.up("d");
+  await page.keyboard.down("ArrowUp"); // right hand away
+  await until(() => last(1)!.position[1], (y) => y > first[1].position[1] + 1e-4, "right hand by arrow");
+  await page.keyboard.up("ArrowUp");
+
+  const box = (await page.locator(".surface").boundingBox())!;
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.waitForTimeout(300);
+  const still = last(0)!, before = last(1)!.position[0];
+  await page.mouse.move(box.x + box.width / 2 + 80, box.y + box.height / 2, { steps: 8 });
+  await until(() => last(1)!.position[0], (x) => Math.abs(x - before - (80 * 0.02) / box.width) < 3e-4, "right hand follows the mouse 1:1 in the focal plane");
+  expect(last(0)!.position).toEqual(still.position);
+
+  await page.keyboard.press("Tab");
+  const parked = last(1)!;
+  await page.mouse.down();
+  await until(() => last(0)!.grip, (grip) => grip === 1, "left grip closes while held");
+  await page.mouse.up();
+  await until(() => last(0)!.grip, (grip) => grip === 0, "and opens when let go");
+  const depth = last(0)!.position[2];
+  await page.mouse.wheel(0, -300);
+  await until(() => last(0)!.position[2], (z) => z > depth + 3e-4, "wheel is depth");
+  const before_turn = last(0)!.quaternion;
+  await page.keyboard.down("q");
+  await until(() => last(0)!.quaternion, (q) => Math.abs(q.reduce((sum, v, k) => sum + v * before_turn[k], 0)) < 0.999, "Q rolls");
+  await page.keyboard.up("q");
+  await page.keyboard.down("c");
+  await until(() => last(0)!.buttons, (buttons) => buttons === 2, "C is the cut button");
+  await page.keyboard.up("c");
+  await until(() => last(0)!.buttons, (buttons) => buttons === 0, "and goes up again");
+  expect(last(1)!.position).toEqual(parked.position);
+});
+
+it("comes back by itself after the line was dropped, and goes on steering", async () => {
+  const { page } = opened;
+  await start("pointer");
+  mock.dropSockets();
+  await page.waitForSelector(".notices [data-code=line]");
+  await page.waitForSelector(".line[data-state=open]");
+  await page.waitForSelector(".notices [data-code=line]", { state: "detached" });
+  const acks = mock.state.acks;
+  await until(() => mock.state.acks, (now) => now > acks + 5, "frames are drawn again");
+});
+
+it("warns by words, signs and outline", async () => {
+  const { page } = opened;
+  await start("demo");
+  const danger = page.locator(".warnings .danger");
+  await danger.waitFor();
+  expect(await danger.textContent()).toContain("Stop");
+  expect(await danger.locator("svg").count()).toBe(1);
+  const styles = await page.locator(".warnings").evaluate((list) => [...list.children].map((one) => getComputedStyle(one).borderTopStyle + getComputedStyle(one).backgroundImage));
+  expect(new Set(styles).size).toBe(styles.length);
+});
+
+it("is used from start to replay with the keyboard alone, and shows where the focus is", async () => {
+  const { page } = opened;
+  await opened.close();
+  await mock.close();
+  mock = await startMock({ duration: 4 });
+  opened = await openPage(mock.address);
+  const { page: fresh } = opened;
+  expect(page).not.toBe(fresh);
+  const focused = () => fresh.evaluate(() => {
+    const one = document.activeElement as HTMLElement;
+    const style = getComputedStyle(one);
+    return { text: (one.getAttribute("aria-label") ?? one.textContent ?? "").trim(), task: one.dataset.task ?? "", ring: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2, href: one.getAttribute("href") ?? "", value: (one as HTMLInputElement).value ?? "" };
+  });
+  const tabTo = async (wanted: (one: Awaited<ReturnType<typeof focused>>) => boolean, what: string) => {
+    for (let i = 0; i < 40; ++i) {
+      const now = await focused();
+      if (wanted(now)) { expect(now.ring, `focus is visible on ${what}`).toBe(true); return; }
+      await fresh.keyboard.press("Tab");
+    }
+    throw new Error(`Tab never reached ${what}`);
+  };
+  await fresh.waitForSelector("button.card");
+  await fresh.keyboard.press("?");
+  await fresh.waitForSelector("dialog.help[open]");
+  await fresh.keyboard.press("Escape");
+  await tabTo((one) => one.task === "knot-square", "the task");
+  await fresh.keyboard.press("Enter");
+  await fresh.waitForSelector("dialog.start[open]");
+  await fresh.keyboard.press("ArrowDown"); // from pointer to demonstration
+  expect((await focused()).value).toBe("demo");
+  await fresh.keyboard.press("Enter");
+  await fresh.waitForSelector(".endcard .primary");
+  expect(mock.state.starts).toEqual([{ type: "start", task: "knot-square", input: "demo" }]);
+  await fresh.keyboard.press("Enter"); // the link to the result has the focus
+  await fresh.waitForSelector(".score tbody tr");
+  await tabTo((one) => one.href.startsWith("#/replay/") && one.text === "Replay", "the replay link");
+  await fresh.keyboard.press("Enter");
+  await fresh.waitForSelector(".transport .play");
+  const time = () => fresh.locator(".scrub").inputValue().then(Number);
+  await until(async () => Number(await fresh.locator(".scrub").getAttribute("max")), (max) => max > 3, "recording opens");
+  await fresh.keyboard.press("ArrowRight");
+  await until(time, (now) => Math.abs(now - 1) < 0.05, "one second on");
+  await fresh.keyboard.press("End");
+  await until(time, (now) => now > 3.9, "to the end");
+  await fresh.keyboard.press("Home");
+  await until(time, (now) => now === 0, "to the start");
+  await fresh.keyboard.press("Enter"); // the play button has the focus
+  await until(time, (now) => now > 0.5, "plays");
+  expect(opened.trouble).toEqual([]);
+});
