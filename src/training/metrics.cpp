@@ -69,6 +69,16 @@ double correlation_at(const std::vector<double>& a, const std::vector<double>& b
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : kNaN;
 }
 
+/// Peak of the smooth signal over the root mean square of what smoothing took away.
+double signal_to_noise(const std::vector<double>& raw, const std::vector<double>& smooth) {
+  double peak = 0.0, noise = 0.0;
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    peak = std::max(peak, std::abs(smooth[k]));
+    noise += (raw[k] - smooth[k]) * (raw[k] - smooth[k]);
+  }
+  return peak / std::sqrt(noise / static_cast<double>(raw.size()) + 1e-300);
+}
+
 }  // namespace
 
 double sparc(const std::vector<double>& speed, double fs, const SparcOptions& options) {
@@ -192,7 +202,7 @@ Smoothness smoothness_of(const std::vector<double>& speed, double fs, const std:
                                  x.begin() + static_cast<std::ptrdiff_t>(s.end));
     };
     sparcs.push_back(sparc(cut(speed), fs));
-    ldljs.push_back(ldlj(cut(smooth), fs));
+    if (signal_to_noise(cut(speed), cut(smooth)) >= kLdljSignalToNoise) ldljs.push_back(ldlj(cut(smooth), fs));
   }
   return {spread_of(std::move(sparcs)), spread_of(std::move(ldljs))};
 }

@@ -66,7 +66,9 @@ struct Spread {
 /// Median and quartiles of finite values; n = 0 and NaN if there are none.
 Spread spread_of(std::vector<double> values);
 
-/// SPARC and LDLJ (of the speed low-passed at 20 Hz) of each movement between 0.3 s and 10 s.
+/// SPARC and LDLJ (of the speed low-passed at 20 Hz) of each movement between 0.3 s and 10 s. Noise ruins LDLJ long before
+/// SPARC: a movement whose peak speed is below kLdljSignalToNoise times what the low-pass takes away gives no LDLJ.
+inline constexpr double kLdljSignalToNoise = 100.0;
 struct Smoothness {
   Spread sparc, ldlj;
 };

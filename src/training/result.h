@@ -53,7 +53,8 @@ struct Measures {
   double idle_time = 0.0;         // [s], in which no instrument moved
   double sparc = 0.0;             // median over movements
   double ldlj = 0.0;
-  int smooth_segments = 0;        // movements that these medians are of
+  int sparc_segments = 0;         // movements that these medians are of
+  int ldlj_segments = 0;
   double grip_peak = 0.0;         // [N], largest squeeze
   double grip_median = 0.0;       // [N], median of the peaks
   int grasps = 0;                 // number of squeezes

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string_view>
 
 #include "base/units.h"
 #include "training/metrics.h"
@@ -15,7 +16,7 @@ constexpr double kGraspForce = 20e-3;  // [N], squeeze above which something is 
 
 std::string number_text(double value) {
   char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.3g", value);
+  std::snprintf(buffer, sizeof buffer, std::abs(value) < 1000.0 ? "%.3g" : "%.0f", value);
   return buffer;
 }
 
@@ -66,8 +67,8 @@ std::string remark(Measure measure, const Result& r) {
   switch (measure) {
     case Measure::security:
       return r.security && r.security->held ? "held at the strongest pull; " : "slipped or broke at this pull; ";
-    case Measure::sparc:
-    case Measure::ldlj: return "median of " + std::to_string(m.smooth_segments) + " movements; ";
+    case Measure::sparc: return "median of " + std::to_string(m.sparc_segments) + " movements; ";
+    case Measure::ldlj: return "median of " + std::to_string(m.ldlj_segments) + " movements; ";
     case Measure::grip_peak:
       return "largest of " + std::to_string(m.grasps) + " grasps, median " + shown(m.grip_median, "N") + "; ";
     case Measure::thread_overload: return "largest tension " + shown(m.tension_peak, "mN") + "; ";
@@ -78,8 +79,8 @@ std::string remark(Measure measure, const Result& r) {
 const char* why_not_measured(Measure measure) {
   switch (measure) {
     case Measure::security: return "the knot was not pulled";
-    case Measure::sparc:
-    case Measure::ldlj: return "no movement between 0.3 s and 10 s long";
+    case Measure::sparc: return "no movement between 0.3 s and 10 s long";
+    case Measure::ldlj: return "no movement between 0.3 s and 10 s long that is clear of noise";
     case Measure::tail_lengths: return "the tails were not both cut, or there is no knot";
     default: return "nothing to measure";
   }
@@ -120,6 +121,21 @@ void score_tails(const RubricItem& rule, const Result& r, ScoreItem& item) {
              band_text(rule);
 }
 
+/// Little effort earns nothing unless the task was carried through.
+bool needs_finish(Measure measure) {
+  switch (measure) {
+    case Measure::time:
+    case Measure::path_length:
+    case Measure::movements:
+    case Measure::idle_time:
+    case Measure::grip_peak:
+    case Measure::drops:
+    case Measure::thread_overload:
+    case Measure::both_moving: return true;
+    default: return false;
+  }
+}
+
 ScoreItem score_item(const Task& task, const RubricItem& rule, const Result& r) {
   ScoreItem item;
   item.name = name_of(rule.measure);
@@ -134,8 +150,10 @@ ScoreItem score_item(const Task& task, const RubricItem& rule, const Result& r) 
     item.why = std::string("no points: ") + why_not_measured(rule.measure);
   } else {
     item.number = value / unit_scale(rule.unit);
-    item.points = rule.points * rule.band.share(value);
-    item.why = shown(value, rule.unit) + ": " + remark(rule.measure, r) + band_text(rule);
+    const bool counts = r.finished || !needs_finish(rule.measure);
+    item.points = counts ? rule.points * rule.band.share(value) : 0.0;
+    item.why = counts ? "" : "no points, as not all steps were done; ";
+    item.why += shown(value, rule.unit) + ": " + remark(rule.measure, r) + band_text(rule);
   }
   item.why += ". Source: " + rule.source;
   return item;
@@ -180,11 +198,8 @@ Curve curve(const std::string& name, const std::string& title, const std::string
   return c;
 }
 
-}  // namespace
-
-Measures measure(const SeriesLog& log, const std::vector<TaskEvent>& events, double strength) {
-  Measures m;
-  std::vector<double> peaks;
+/// Paths, movements, rest and smoothness, over all instruments.
+void measure_movement(const SeriesLog& log, Measures& m) {
   std::vector<double> sparcs, ldljs, fastest(log.size(), 0.0);
   for (int t = 0; t < log.n_tools(); ++t) {
     const Points path = log.tool(t).path();
@@ -195,20 +210,34 @@ Measures measure(const SeriesLog& log, const std::vector<TaskEvent>& events, dou
     m.movements += static_cast<int>(segments.size());
     for (const Segment& segment : segments) {
       const Smoothness one = smoothness_of(speed, kMetricRate, {segment});
-      if (one.sparc.n == 0) continue;
-      sparcs.push_back(one.sparc.median);
-      ldljs.push_back(one.ldlj.median);
+      if (one.sparc.n > 0) sparcs.push_back(one.sparc.median);
+      if (one.ldlj.n > 0) ldljs.push_back(one.ldlj.median);
     }
-    const std::vector<double> grips = force_peaks(log.tool(t).grip, kGraspForce);
-    peaks.insert(peaks.end(), grips.begin(), grips.end());
   }
-  m.smooth_segments = static_cast<int>(sparcs.size());
+  m.sparc_segments = static_cast<int>(sparcs.size());
+  m.ldlj_segments = static_cast<int>(ldljs.size());
   m.sparc = spread_of(sparcs).median;
   m.ldlj = spread_of(ldljs).median;
   m.idle_time = idle_time(fastest, kMetricRate);
+}
+
+void measure_grip(const SeriesLog& log, Measures& m) {
+  std::vector<double> peaks;
+  for (int t = 0; t < log.n_tools(); ++t) {
+    const std::vector<double> grips = force_peaks(log.tool(t).grip, kGraspForce);
+    peaks.insert(peaks.end(), grips.begin(), grips.end());
+  }
   m.grasps = static_cast<int>(peaks.size());
   m.grip_median = peaks.empty() ? 0.0 : spread_of(peaks).median;
   m.grip_peak = peaks.empty() ? 0.0 : *std::max_element(peaks.begin(), peaks.end());
+}
+
+}  // namespace
+
+Measures measure(const SeriesLog& log, const std::vector<TaskEvent>& events, double strength) {
+  Measures m;
+  measure_movement(log, m);
+  measure_grip(log, m);
   for (const TaskEvent& e : events) m.drops += std::string_view(e.name) == "drop" ? 1 : 0;
   for (double tension : log.tension()) m.tension_peak = std::max(m.tension_peak, tension);
   m.overload = strength > 0.0 ? m.tension_peak / strength : std::numeric_limits<double>::quiet_NaN();

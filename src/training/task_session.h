@@ -62,7 +62,7 @@ class TaskSession {
   StepRecogniser recogniser_;
   SeriesLog log_;
   std::vector<TaskEvent> events_;
-  Observation last_;             // newest, at kMetricRate
+  Observation last_;             // newest
   bool observed_ = false;
   bool paused_ = true;
   bool failed_ = false;          // watching failed (out of memory): scoring stopped, said in the result

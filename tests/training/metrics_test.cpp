@@ -98,6 +98,19 @@ TEST(Metrics, CountsMovesMeasuresPathAndRest) {
   EXPECT_GT(smooth.ldlj.median, -6.5);
 }
 
+TEST(Metrics, NoLdljFromQuantisedPositions) {
+  // 55 um steps, as of a coarse encoder: SPARC hardly moves, LDLJ would be meaningless and is refused.
+  Points path = moves(2);
+  for (Eigen::Index k = 0; k < path.cols(); ++k) path(0, k) = 55e-6 * std::round(path(0, k) / 55e-6);
+  const std::vector<double> speed = speed_of(path, 100.0);
+  const std::vector<Segment> found = movements(speed, 100.0);
+  ASSERT_EQ(found.size(), 2u);
+  const Smoothness smooth = smoothness_of(speed, 100.0, found);
+  EXPECT_EQ(smooth.sparc.n, 2);
+  EXPECT_NEAR(smooth.sparc.median, -1.46, 0.15);
+  EXPECT_EQ(smooth.ldlj.n, 0);
+}
+
 TEST(Metrics, SmallShakesAreNoMovements) {
   Points path = Points::Zero(3, 500);
   for (Eigen::Index k = 0; k < 500; ++k) path(1, k) = 25e-6 * std::sin(2.0 * std::numbers::pi * 10.0 * static_cast<double>(k) / 100.0);

@@ -178,6 +178,7 @@ TEST(TaskSession, CountsDropsAndKeepsWorldEvents) {
   run.world_event("drop");
   run.world_event("grasp");
   run.world_event("drop");
+  run.cut();
   const Result r = run.session.finish(kHeld);
   EXPECT_EQ(r.measures.drops, 2);
   EXPECT_NEAR(item(r, "drops").points, 2.5, 1e-9);
@@ -218,6 +219,15 @@ TEST(TaskSession, JsonHasTheKeysAgreedOn) {
   const auto viewer = nlohmann::json::parse(result_json(run.session.finish(), false));
   EXPECT_FALSE(viewer.contains("verdict"));
   EXPECT_TRUE(viewer["knot"]["security_newton"].is_null());
+}
+
+TEST(TaskSession, DoingNothingEarnsNothing) {
+  Tie run("knot-square", {});
+  const Result r = run.session.finish();
+  for (const ScoreItem& i : r.items) {
+    if (i.name == "sparc" || i.name == "ldlj") continue;
+    EXPECT_EQ(i.points, 0.0) << i.name << ": " << i.why;
+  }
 }
 
 TEST(TaskSession, NothingSeenGivesAResultToo) {
