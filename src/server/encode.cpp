@@ -102,6 +102,13 @@ void write_cuts(FrameWriter& w, const Observation& o) {
   w.raw("]");
 }
 
+json post_json(const PostShape& post) {
+  return {{"position", vector_json(post.p_W)},
+          {"axis", vector_json(post.axis_W)},
+          {"radius", post.radius},
+          {"half_length", post.half_length}};
+}
+
 }  // namespace
 
 std::string hello_message(const HelloView& hello, int client) {
@@ -127,13 +134,6 @@ std::string scene_message(const SceneDescription& scene) {
                      {"pad_length", t.pad_length},
                      {"max_angle", t.max_angle}});
   }
-  json post = nullptr;
-  if (scene.has_post) {
-    post = {{"position", vector_json(scene.post.p_W)},
-            {"axis", vector_json(scene.post.axis_W)},
-            {"radius", scene.post.radius},
-            {"half_length", scene.post.half_length}};
-  }
   return text_of({{"type", "scene"},
                   {"task", scene.task},
                   {"title", scene.title},
@@ -141,7 +141,8 @@ std::string scene_message(const SceneDescription& scene) {
                   {"thread_radius", scene.thread_radius},
                   {"thread_strength", scene.thread_strength},
                   {"dt", scene.dt},
-                  {"post", post},
+                  {"post", scene.has_post ? post_json(scene.post) : json()},
+                  {"base", scene.has_post ? post_json(scene.base) : json()},
                   {"floor_height", scene.floor_height},
                   {"tools", tools},
                   {"capacity", scene.capacity}});
