@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
@@ -44,7 +45,7 @@ class Pty {
 
   const std::string& path() const { return link_.empty() ? path_ : link_; }
 
-  /// Writes all, waiting for room up to a second at a time; false when nobody makes room.
+  /// Writes all, waiting for room up to a second at a time; false when nobody listens or makes room.
   bool write(std::span<const std::uint8_t> bytes) {
     while (!bytes.empty()) {
       const ssize_t put = ::write(master_, bytes.data(), bytes.size());
@@ -52,8 +53,9 @@ class Pty {
         bytes = bytes.subspan(static_cast<std::size_t>(put));
         continue;
       }
+      if (errno != EAGAIN) return false;
       pollfd room{master_, POLLOUT, 0};
-      if (::poll(&room, 1, 1000) <= 0) return false;
+      if (::poll(&room, 1, 1000) <= 0 || (room.revents & POLLHUP)) return false;
     }
     return true;
   }

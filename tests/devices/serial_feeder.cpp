@@ -36,10 +36,11 @@ class Line {
  public:
   Line(filum::Pty& pty, const Options& options) : pty_(pty), options_(options), random_(options.seed) {}
 
-  void send(Frame frame) {
+  /// False when the trainer has closed the port.
+  bool send(Frame frame) {
     if (chance(options_.drop)) {
       ++dropped_;
-      return;
+      return true;
     }
     bool damaged = false;
     for (std::uint8_t& byte : frame) {
@@ -51,7 +52,7 @@ class Line {
       for (int i = 0; i < 12; ++i) frame.push_back(static_cast<std::uint8_t>(random_()));
     damaged_ += damaged;
     ++sent_;
-    pty_.write(frame);
+    return pty_.write(frame);
   }
   void report() const {
     std::fprintf(stderr, "sent %llu frames, %llu of them damaged; dropped %llu\n",
@@ -111,7 +112,9 @@ void play(const Options& options, filum::ScriptFrames& frames, filum::Pty& pty) 
     }
     now.clear();
     frames.append(t, now);
-    for (Frame& frame : now) line.send(std::move(frame));
+    bool listening = true;
+    for (Frame& frame : now) listening = listening && line.send(std::move(frame));
+    if (!listening) break;
     answer(pty, heard, frames, line, t);
   }
   line.report();
