@@ -37,7 +37,7 @@ describe("force bars", () => {
     const panel = new ForcePanel(scene), frame = { ...frameAt(0, 1, 10), tension: [0.01, 0.14, 0.02] };
     panel.show(frame, 0);
     const meter = panel.element.querySelector(".meter")!;
-    expect(meter.getAttribute("aria-valuetext")).toBe("Thread tension 140 mN · near limit");
+    expect(meter.getAttribute("aria-valuetext")).toBe("Tension 140 mN · near limit");
     expect(meter.getAttribute("data-zone")).toBe("near-break");
     panel.show({ ...frame, tools: frame.tools.map((tool) => ({ ...tool, input_valid: false })) }, 0);
     expect(panel.element.textContent).toContain("no input");

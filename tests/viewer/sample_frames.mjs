@@ -9,34 +9,41 @@ const kSteps = ["grasp the long end", "form the loop", "pass the short end", "la
 
 export const kScene = {
   type: "scene", task: "knot-square", title: "Square knot", suture: "10-0-nylon", thread_radius: 12.5e-6, thread_strength: 0.15, dt: 0.002,
-  post: { position: [0, 0, 0.003], axis: [0, 1, 0], radius: 0.5e-3, half_length: 5e-3 }, floor_height: 0, capacity: 220,
+  post: { position: [0, 0, 0.44e-3], axis: [0, 1, 0], radius: 0.4e-3, half_length: 6e-3 }, base: { position: [0, 0, -0.44e-3], axis: [0, 1, 0], radius: 0.4e-3, half_length: 6e-3 },
+  floor_height: -3e-3, capacity: 240,
   tools: [
-    { name: "forceps-left", kind: "forceps", jaw_length: 8e-3, tip_radius: 0.15e-3, base_radius: 0.6e-3, pad_length: 1.5e-3, max_angle: 0.5 },
-    { name: "needle-holder", kind: "needle-holder", jaw_length: 8e-3, tip_radius: 0.2e-3, base_radius: 0.8e-3, pad_length: 1.5e-3, max_angle: 0.5 },
+    { name: "forceps-left", kind: "forceps", jaw_length: 12e-3, tip_radius: 0.15e-3, base_radius: 0.7e-3, pad_length: 2e-3, max_angle: 0.244 },
+    { name: "needle-holder", kind: "needle-holder", jaw_length: 10e-3, tip_radius: 0.2e-3, base_radius: 0.8e-3, pad_length: 2.5e-3, max_angle: 0.314 },
+    { name: "scissors", kind: "scissors", jaw_length: 10e-3, tip_radius: 0.15e-3, base_radius: 0.7e-3, pad_length: 4e-3, max_angle: 0.314 },
   ],
 };
 
 const mm = 1e-3;
-const product = (a, b) => [a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3], a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
-  a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1], a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]];
-const turn = (axis, angle) => [Math.cos(angle / 2), ...axis.map((v) => v * Math.sin(angle / 2))];
+/// Quaternion of a tool frame: z towards the handle, x along the part of `opening` across it.
+function looking(handle, opening) {
+  const unit = (v) => v.map((x) => x / Math.hypot(...v)), dot = (a, b) => a.reduce((sum, x, k) => sum + x * b[k], 0);
+  const z = unit(handle), along = dot(opening, z), x = unit(opening.map((v, k) => v - along * z[k]));
+  const y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]];
+  const w = 0.5 * Math.sqrt(Math.max(1e-12, 1 + x[0] + y[1] + z[2]));
+  return w > 1e-3 ? [w, (y[2] - z[1]) / (4 * w), (z[0] - x[2]) / (4 * w), (x[1] - y[0]) / (4 * w)] : [0, 1, 0, 0];
+}
 
 /// Thread from the left tip, once round the post with one half knot above it, to the right tip.
 function threadPoints(left, right, count) {
   const key = [left];
-  const top = [0, 0, 3.62];
+  const top = [0, 0, 0.96];
   for (let k = 0; k <= 6; ++k) { const s = k / 6; key.push([left[0] * (1 - s) - 1.1 * s, left[1] * (1 - s) + 0.3 * s, left[2] * (1 - s) + (top[2] + 0.5) * s + Math.sin(s * 3) * 0.5]); }
   for (let k = 0; k <= 40; ++k) { // three half twists above the post, then round it
     const s = k / 40, a = Math.PI * 3 * s;
     key.push([-0.55 + 1.1 * s, 0.16 * Math.cos(a), top[2] + 0.02 + 0.16 * Math.sin(a)]);
   }
-  for (let k = 1; k < 24; ++k) { const a = Math.PI / 2 - (2 * Math.PI * k) / 24; key.push([0.53 * Math.cos(a), 0.1 - 0.2 * k / 24, 3 + 0.53 * Math.sin(a)]); }
+  for (let k = 1; k < 24; ++k) { const a = Math.PI / 2 - (2 * Math.PI * k) / 24; key.push([0.43 * Math.cos(a), 0.1 - 0.2 * k / 24, 0.44 + 0.43 * Math.sin(a)]); }
   for (let k = 0; k <= 40; ++k) {
     const s = k / 40, a = Math.PI * 3 * s + Math.PI;
     key.push([-0.55 + 1.1 * s, 0.16 * Math.cos(a), top[2] + 0.02 + 0.16 * Math.sin(a)]);
   }
   for (let k = 0; k <= 10; ++k) { const s = k / 10; key.push([1.1 * (1 - s) + right[0] * s, -0.3 * (1 - s) + right[1] * s, (top[2] + 0.5) * (1 - s) + right[2] * s + Math.sin(s * 3) * 1.4]); }
-  for (let k = 1; k <= 26; ++k) { const s = k / 26; key.push([right[0] + 7 * Math.sin(2.4 * s) * s - 2 * s, right[1] - 5.5 * s * Math.cos(1.3 * s), Math.max(0.02, right[2] * (1 - 1.6 * s) + 0.2)]); }
+  for (let k = 1; k <= 26; ++k) { const s = k / 26; key.push([right[0] + 7 * Math.sin(2.4 * s) * s - 2 * s, right[1] - 5.5 * s * Math.cos(1.3 * s), Math.max(-2.98, right[2] * (1 - 1.6 * s) - 1.4 * s)]); }
   const out = [];
   for (let i = 0; i < count; ++i) {
     const u = (i / (count - 1)) * (key.length - 1), j = Math.min(key.length - 2, Math.floor(u)), f = u - j;
@@ -47,17 +54,18 @@ function threadPoints(left, right, count) {
 
 export function frameAt(time, id, duration) {
   const phase = time * 0.9, open = 0.5 + 0.5 * Math.sin(phase * 1.3);
-  const left = [-3.1 - 0.9 * Math.sin(phase), 0.6 + 0.4 * Math.cos(phase), 4.9], right = [3.4 + 0.7 * Math.sin(phase + 1), -0.7 + 0.5 * Math.sin(phase), 5];
-  const pose = (p, side) => ({ position: p.map((v) => v * mm), quaternion: product(turn([0, 0, 1], side * 0.9), product(turn([1, 0, 0], 0.95), turn([0, 0, 1], side * 0.6))) });
+  const left = [-3.1 - 0.9 * Math.sin(phase), 0.6 + 0.4 * Math.cos(phase), 2.2], right = [3.4 + 0.7 * Math.sin(phase + 1), -0.7 + 0.5 * Math.sin(phase), 2.3];
+  const pose = (p, handle, opening) => ({ position: p.map((v) => v * mm), quaternion: looking(handle, opening) });
+  const poses = [pose(left, [-0.6, -0.5, 0.7], [0, 1, 0.7]), pose(right, [0.6, -0.5, 0.7], [0, 1, 0.7]), pose([7, 9, 4], [0.5, 0.6, 0.7], [1, 0, -0.7])];
   const tension = 0.075 * (1 + Math.sin(phase * 0.8)), count = 150 + (Math.floor(time * 2) % 5) * 12, step = Math.min(kSteps.length, Math.floor((time / duration) * kSteps.length));
-  const tool = (p, side, grasped) => ({ pose: pose(p, side), device_pose: pose(p, side), grip_angle: grasped >= 0 ? 0.012 : 0.3 * open, grip_force: grasped >= 0 ? 0.12 + 0.05 * open : 0, thread_force: grasped >= 0 ? tension : 0,
+  const tool = (i, grasped) => ({ pose: poses[i], device_pose: poses[i], grip_angle: grasped >= 0 ? 0.004 : 0.2 * open, grip_force: grasped >= 0 ? 0.12 + 0.05 * open : 0, thread_force: grasped >= 0 ? tension : 0,
     force: [0, 0, 0], grasped, input_valid: true });
   const warnings = [];
   if (tension > 0.09) warnings.push({ level: "warn", code: "thread-tension", text: "The thread is pulled hard." });
   if (tension > 0.128) warnings.push({ level: "danger", code: "thread-overload", text: "The thread is about to break: ease off." });
   return {
     type: "frame", id, step: Math.round(time * 500), time, positions: threadPoints(left, right, count), tension: new Array(count - 1).fill(tension), contact: new Array(count).fill(0),
-    tools: [tool(left, 1, 3), tool(right, -1, count - 40)], broken: false, break_edge: -1, cuts: [], overruns: 3, real_time_factor: 1,
+    tools: [tool(0, 3), tool(1, count - 40), tool(2, -1)], broken: false, break_edge: -1, cuts: [], overruns: 3, real_time_factor: 1,
     task: { step_name: kSteps[Math.min(step, kSteps.length - 1)], step_index: step, steps: kSteps, hint: `Now: ${kSteps[Math.min(step, kSteps.length - 1)]}, with the needle holder.`, elapsed: time, done: time >= duration, warnings },
     devices: [{ name: "demonstrator", state: "live", received: Math.round(time * 1000), lost: 0, corrupt: 0, rejected: 0 }],
   };

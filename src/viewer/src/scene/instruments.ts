@@ -8,12 +8,10 @@ import type { Materials } from "./materials";
 const kMm = 1000;
 const kReach = 62; // [mm], how far the handle is drawn; it leaves the field long before
 
-interface Half { mesh: THREE.Mesh; side: 1 | -1; base: Float32Array | null; bent: Float32Array | null }
-
 export class Instrument {
   readonly group = new THREE.Group();
   private readonly halves: THREE.Object3D[] = [];
-  private readonly morphs: Half[] = [];
+  private readonly bending: THREE.Mesh[] = [];
   private readonly maxAngle: number;
 
   constructor(readonly shape: ToolShape, index: number, metals: Materials) {
@@ -32,7 +30,7 @@ export class Instrument {
     this.group.quaternion.set(q[1], q[2], q[3], q[0]);
     const half = Math.max(0, state.grip_angle) / 2;
     for (let i = 0; i < this.halves.length; ++i) this.halves[i].rotation.y = (i === 0 ? -1 : 1) * half;
-    for (const part of this.morphs) part.mesh.morphTargetInfluences![0] = (2 * half) / this.maxAngle;
+    for (const mesh of this.bending) mesh.morphTargetInfluences![0] = (2 * half) / this.maxAngle;
   }
 
   /// Forceps bend at the spring: the half with the jaw is drawn straight and fully open, and anything between is a blend.
@@ -44,7 +42,7 @@ export class Instrument {
       closed.morphAttributes.normal = [open.getAttribute("normal")];
       const mesh = new THREE.Mesh(closed, metals.bright);
       mesh.frustumCulled = false;
-      this.morphs.push({ mesh, side, base: null, bent: null });
+      this.bending.push(mesh);
       this.group.add(mesh);
     }
   }
@@ -66,20 +64,20 @@ export class Instrument {
       this.halves.push(half);
       this.group.add(half);
     }
-    const lock = new THREE.Mesh(new THREE.CylinderGeometry(1.75 * radius, 1.75 * radius, 1.7 * radius, 40, 1), metals.dark);
+    const lock = new THREE.Mesh(new THREE.CylinderGeometry(1.9 * radius, 1.9 * radius, 2.1 * radius, 40, 1), metals.dark);
     lock.position.z = hinge;
-    const screw = new THREE.Mesh(new THREE.SphereGeometry(0.8 * radius, 28, 14, 0, 2 * Math.PI, 0, Math.PI / 2), metals.bright);
+    const screw = new THREE.Mesh(new THREE.SphereGeometry(0.85 * radius, 28, 14, 0, 2 * Math.PI, 0, Math.PI / 2), metals.bright);
     screw.scale.y = 0.45;
-    screw.position.set(0, 0.84 * radius, hinge);
+    screw.position.set(0, 1.04 * radius, hinge);
     const under = screw.clone();
     under.rotation.x = Math.PI;
-    under.position.y = -0.84 * radius;
+    under.position.y = -1.04 * radius;
     this.group.add(lock, screw, under);
   }
 
   /// One ring on the handle for the first tool, two for the second: told apart without colour.
   private addBands(index: number, metals: Materials): void {
-    const z = this.shape.jaw_length * kMm + 5.5;
+    const z = this.shape.jaw_length * kMm + 4;
     for (let k = 0; k <= index; ++k) {
       for (const side of [1, -1] as const) {
         const sections = (this.shape.kind === "forceps" ? forcepsSections(this.shape, 0) : pivotedSections(this.shape, false));
@@ -118,11 +116,12 @@ function band(sections: Section[], from: number, to: number, mirror: boolean): T
 
 const smooth = (t: number) => { const c = Math.min(1, Math.max(0, t)); return c * c * (3 - 2 * c); };
 
-/// One half of a pair of jeweller's forceps, opened by `angle` [rad]. The jaw is half round with a flat pad.
+/// One half of a pair of jeweller's forceps, opened by `angle` [rad]. A jaw is the round bar that the thread feels (radius from
+/// tip_radius to base_radius, the closed pair touching in the middle), flattened a little at the pad.
 export function forcepsSections(shape: ToolShape, angle: number): Section[] {
   const jaw = shape.jaw_length * kMm, tip = shape.tip_radius * kMm, base = shape.base_radius * kMm;
   const stations = [0, 0.04, 0.1, 0.2, 0.4, 0.8, 1.4, 2.2, 3.2, 4.4, 5.6, 6.6, 7.4, 8.2, 9, 10, 11.5, 13.5, 16, 19, 23, 28, 34, 41, 50, kReach]
-    .map((z) => (z < 8.5 ? (z / 8) * jaw : z - 8 + jaw));
+    .map((z) => (z <= 8 ? (z / 8) * jaw : z - 8 + jaw));
   const bendFrom = 0.72 * jaw, bendTo = 1.28 * jaw;
   // centre line: straight handle, bent towards the tip about the hinge
   const centre = new Map<number, [number, number, number]>();
@@ -141,14 +140,14 @@ export function forcepsSections(shape: ToolShape, angle: number): Section[] {
   return stations.map((s): Section => {
     const u = Math.min(1, s / jaw), past = Math.max(0, s - jaw);
     const nose = Math.sqrt(Math.min(1, Math.max(0.02, 1 - Math.pow(Math.max(0, 1 - s / (0.9 * tip)), 2))));
-    const taper = tip + (base - tip) * Math.pow(u, 0.85);
+    const taper = tip + (base - tip) * u;
     const flare = smooth(past / 16), arm = smooth((past - 6) / 30);
     const [cx, , cz] = centre.get(s)!;
-    const bow = 0.15 * flare + 1.9 * arm;
+    const yaw = -slope(s), beside = taper * (1 - 0.25 * flare) + 0.9 * arm;
     return {
-      at: [cx + bow, 0, cz], yaw: -slope(s),
-      width: nose * taper * (1 - 0.1 * flare) + 0.25 * arm, height: nose * taper * (1 + 1.5 * flare + 1.6 * arm),
-      inner: 0.01 + 0.35 * arm * taper, square: 2.1 + 2.4 * flare,
+      at: [cx + beside * Math.cos(yaw), 0, cz - beside * Math.sin(yaw)], yaw,
+      width: nose * taper * (1 - 0.45 * flare) + 0.2 * arm, height: nose * taper * (1 + 0.9 * flare + 0.7 * arm),
+      inner: Math.max(0.3, nose) * taper * (1 - 0.45 * flare), square: 2 + 2.2 * flare,
     };
   });
 }
@@ -161,12 +160,12 @@ export function pivotedSections(shape: ToolShape, blade: boolean): Section[] {
   return stations.map((s): Section => {
     const u = Math.min(1, s / jaw), past = Math.max(0, s - jaw);
     const nose = Math.sqrt(Math.min(1, Math.max(0.02, 1 - Math.pow(Math.max(0, 1 - s / (0.9 * tip)), 2))));
-    const taper = (tip + (base - tip) * Math.pow(u, 0.8)) * (blade ? 0.75 : 1);
+    const taper = tip + (base - tip) * u;
     const cross = smooth((s - 0.9 * jaw) / (0.35 * jaw)), handle = smooth((past - 2) / 14);
     return {
-      at: [-cross * (0.1 + 0.055 * past + 1.4 * handle), 0, s], yaw: 0,
-      width: nose * taper * (1 + 0.25 * handle), height: nose * taper * (blade ? 0.7 : 1) * (1 + 0.55 * handle),
-      inner: 0.012 + cross * taper * 0.9, square: 2.1 + (blade ? 1.2 : 0.5) * (1 - handle),
+      at: [taper * (1 - cross) - cross * (0.1 + 0.03 * past + 0.9 * handle), 0, s], yaw: 0,
+      width: nose * taper * (1 + 0.1 * handle), height: nose * taper * (blade ? 0.75 : 1) * (1 + 0.25 * handle),
+      inner: Math.max(0.3, nose) * taper, square: 2 + (blade ? 1.2 : 0.3) * (1 - handle),
     };
   });
 }
@@ -177,6 +176,6 @@ function insertSections(shape: ToolShape): Section[] {
   const from = 0.5 * shape.tip_radius * kMm;
   return [from, from + 0.04, from + 0.15, 0.5 * end, end - 0.1, end].map((z, k) => {
     const s = interpolate(whole, z), share = k === 0 || k === 5 ? 0.9 : 1.025;
-    return { ...s, width: s.width * share * 0.7, height: s.height * share, inner: 0.014 };
+    return { ...s, width: s.width * share, height: s.height * share, inner: s.inner * 1.01 };
   });
 }

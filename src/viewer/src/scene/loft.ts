@@ -6,14 +6,13 @@ export interface Section {
   yaw: number; // [rad], rotation of the section about y (the hinge direction)
   width: number; // [mm], half extent along x, on the outer side
   height: number; // [mm], half extent along y
-  inner: number; // [mm], half extent along x on the inner (flat) side; equal to width for a whole bar
+  inner: number; // [mm], half extent along x on the inner side
   square: number; // 2 = round, larger = more square
 }
 
 const kArc = 14; // points on the outer side of a section
 
-/// Points of a section in its own x-y plane, counter-clockwise as seen from +z. The outer side (+x) is rounded, the inner
-/// side is rounded where it is as thick as the outer and flat where `inner` is small.
+/// Points of a section in its own x-y plane, counter-clockwise as seen from +z.
 function outline(section: Section, out: [number, number][]): void {
   out.length = 0;
   const power = 2 / section.square;
@@ -25,8 +24,7 @@ function outline(section: Section, out: [number, number][]): void {
   for (let k = 1; k < kArc; ++k) {
     const angle = Math.PI / 2 + (Math.PI * k) / kArc;
     const c = Math.cos(angle), s = Math.sin(angle);
-    const flat = section.inner < 0.25 * section.width ? 6 : section.square;
-    out.push([-section.inner * Math.pow(Math.max(0, -c), 2 / flat), section.height * Math.sign(s) * Math.pow(Math.abs(s), 2 / flat)]);
+    out.push([-section.inner * Math.pow(Math.max(0, -c), power), section.height * Math.sign(s) * Math.pow(Math.abs(s), power)]);
   }
 }
 

@@ -8,7 +8,7 @@ import { Stage } from "./stage";
 
 export type StereoMode = "mono" | "side-by-side" | "anaglyph";
 
-const kThinnest = 0.8; // [CSS pixel], least radius of the thread on the page
+const kThinnest = 0.95; // [CSS pixel], least radius of the thread on the page
 const kNear = 80, kFar = 320; // [mm]
 
 export class Microscope {
@@ -29,7 +29,7 @@ export class Microscope {
   private readonly eye = new THREE.Vector3();
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, stencil: true, powerPreference: "high-performance" });
     this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
@@ -138,8 +138,8 @@ export class Microscope {
     const size = Math.round(this.diameter * ratio);
     const needsPicture = level.blurSamples > 0 || this.stereo === "anaglyph";
     if (needsPicture) {
-      this.picture = new THREE.WebGLRenderTarget(size, size, { type: THREE.HalfFloatType, samples: level.samples });
-      this.picture.depthTexture = new THREE.DepthTexture(size, size, THREE.UnsignedIntType);
+      this.picture = new THREE.WebGLRenderTarget(size, size, { type: THREE.HalfFloatType, samples: level.samples, stencilBuffer: true });
+      this.picture.depthTexture = new THREE.DepthTexture(size, size, THREE.UnsignedInt248Type, undefined, undefined, undefined, undefined, undefined, undefined, THREE.DepthStencilFormat);
     }
     if (this.stereo === "anaglyph") {
       for (let k = 0; k < 2; ++k) {

@@ -2,18 +2,23 @@
 // It is built from the scene message and follows the frames; it works in millimetres and knows nothing of the screen.
 import * as THREE from "three";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
+import { RoundedBoxGeometry } from "three/examples/jsm/geometries/RoundedBoxGeometry.js";
 import type { Frame, Scene } from "../messages";
+import { FlatShadows } from "./flat_shadows";
 import { Instrument } from "./instruments";
 import { kSheet, paintedMaterials, physicalMaterials, type Materials } from "./materials";
 import { ThreadTube } from "./thread";
 
 const kMm = 1000;
+const kShadowReach = 6.5; // [mm], shadows fall into the field from at least this far
+const kLight = new THREE.Vector3(-62, 58, 150); // [mm], from the field to the oblique lamp
 
 export class Stage {
   readonly scene = new THREE.Scene();
   readonly key = new THREE.DirectionalLight(0xfff1dd, 2.3);
   private readonly coaxial = new THREE.DirectionalLight(0xf4f8ff, 0.4);
   private readonly content = new THREE.Group();
+  private readonly flatShadows = new FlatShadows();
   private materials: Materials;
   private description: Scene | null = null;
   private instruments: Instrument[] = [];
@@ -34,7 +39,7 @@ export class Stage {
     this.key.shadow.bias = -0.0004;
     this.key.shadow.normalBias = 0.012;
     this.key.shadow.radius = 3.2;
-    this.scene.add(this.key, this.key.target, this.coaxial, this.coaxial.target, this.content);
+    this.scene.add(this.key, this.key.target, this.coaxial, this.coaxial.target, this.content, this.flatShadows.group);
   }
 
   /// Exchanges the materials; the next frame fills the scene again.
@@ -69,12 +74,14 @@ export class Stage {
     this.centre = message.post ? [message.post.position[0] * kMm, message.post.position[1] * kMm] : [0, 0];
     this.threadRadius = message.thread_radius * kMm;
     this.addSheet();
-    if (message.post) this.addPost(message.post);
+    for (const bar of [message.post, message.base]) if (bar) this.addBar(bar);
+    if (message.post) this.addStands(message.post);
     this.instruments = message.tools.map((shape, index) => new Instrument(shape, index, this.materials));
     for (const instrument of this.instruments) this.content.add(instrument.group);
     this.thread = new ThreadTube(Math.max(2, message.capacity), this.materials.thread);
     this.points.array = new Float64Array(3 * Math.max(2, message.capacity));
     this.content.add(this.thread.mesh);
+    this.flatShadows.follow(this.content);
   }
 
   /// `thinnest` [mm]: least radius drawn, so that the thread does not fall between the pixels at low magnification.
@@ -92,12 +99,14 @@ export class Stage {
   /// Light follows the microscope: an oblique lamp beside the objective for the shadows and a weak one along the view.
   aim(target: THREE.Vector3, eye: THREE.Vector3, field: number, shadows: boolean, mapSize: number): void {
     this.key.target.position.copy(target);
-    this.key.position.set(target.x - 62, target.y + 58, target.z + 150);
+    this.key.position.copy(target).add(kLight);
     this.coaxial.target.position.copy(target);
     this.coaxial.position.copy(eye);
-    const span = 0.62 * field;
+    const span = Math.max(kShadowReach, 0.62 * field);
     const shadow = this.key.shadow;
     this.key.castShadow = shadows;
+    this.flatShadows.group.visible = !shadows;
+    if (!shadows) this.flatShadows.update(kLight, this.floorHeight);
     if (shadow.mapSize.x !== mapSize) {
       shadow.mapSize.set(mapSize, mapSize);
       shadow.map?.dispose();
@@ -129,33 +138,33 @@ export class Stage {
     this.content.add(sheet);
   }
 
-  private addPost(post: NonNullable<Scene["post"]>): void {
-    const radius = post.radius * kMm, half = post.half_length * kMm;
-    const centre = new THREE.Vector3(...post.position).multiplyScalar(kMm);
-    const axis = new THREE.Vector3(...post.axis).normalize();
-    const bar = new THREE.Mesh(new THREE.CapsuleGeometry(radius, 2 * half, 16, 48, 1), this.materials.post);
-    bar.position.copy(centre);
-    bar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), axis);
-    bar.castShadow = bar.receiveShadow = true;
-    this.content.add(bar);
-    for (const end of [-1, 1]) this.content.add(this.stanchion(centre.clone().addScaledVector(axis, end * half), axis, radius));
+  private addBar(bar: NonNullable<Scene["post"]>): void {
+    const geometry = new THREE.CapsuleGeometry(bar.radius * kMm, 2 * bar.half_length * kMm, 16, 48, 1);
+    const mesh = new THREE.Mesh(geometry, this.materials.post);
+    mesh.position.set(...bar.position).multiplyScalar(kMm);
+    mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3(...bar.axis).normalize());
+    mesh.castShadow = mesh.receiveShadow = true;
+    this.content.add(mesh);
   }
 
-  /// Foot that carries one end of the post.
-  private stanchion(top: THREE.Vector3, axis: THREE.Vector3, radius: number): THREE.Object3D {
-    const group = new THREE.Group();
-    const height = top.z - this.floorHeight;
-    const collar = new THREE.Mesh(new THREE.CylinderGeometry(1.45 * radius, 1.45 * radius, 1.6 * radius, 40), this.materials.bright);
-    collar.position.copy(top);
-    collar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), axis);
-    const leg = new THREE.Mesh(new THREE.CylinderGeometry(0.8 * radius, 0.8 * radius, height, 32), this.materials.bright);
-    leg.rotation.x = Math.PI / 2;
-    leg.position.set(top.x, top.y, top.z - height / 2);
-    const foot = new THREE.Mesh(new THREE.CylinderGeometry(2.6 * radius, 2.9 * radius, 0.5 * radius, 48), this.materials.black);
-    foot.rotation.x = Math.PI / 2;
-    foot.position.set(top.x, top.y, this.floorHeight + 0.25 * radius);
-    group.add(collar, leg, foot);
-    group.traverse((object) => { object.castShadow = object.receiveShadow = true; });
-    return group;
+  /// Clamps and feet at both ends of the post. Only for the eye: they stand where the bars end and the thread never is.
+  private addStands(post: NonNullable<Scene["post"]>): void {
+    const radius = post.radius * kMm;
+    const axis = new THREE.Vector3(...post.axis).normalize();
+    for (const end of [-1, 1]) {
+      const at = new THREE.Vector3(...post.position).addScaledVector(axis, end * post.half_length).multiplyScalar(kMm);
+      const height = at.z + 1.6 * radius - this.floorHeight;
+      const clamp = new THREE.Mesh(new RoundedBoxGeometry(3.6 * radius, 2.2 * radius, height, 5, 0.45 * radius), this.materials.bright);
+      clamp.position.set(at.x, at.y, this.floorHeight + height / 2);
+      clamp.rotation.z = Math.atan2(axis.y, axis.x) - Math.PI / 2;
+      const screw = new THREE.Mesh(new THREE.CylinderGeometry(0.75 * radius, 0.75 * radius, 0.3 * radius, 32), this.materials.black);
+      screw.rotation.x = Math.PI / 2;
+      screw.position.set(at.x, at.y, at.z + 1.65 * radius);
+      const foot = new THREE.Mesh(new THREE.CylinderGeometry(4.6 * radius, 5 * radius, 0.8 * radius, 64), this.materials.black);
+      foot.rotation.x = Math.PI / 2;
+      foot.position.set(at.x, at.y, this.floorHeight + 0.4 * radius);
+      for (const part of [clamp, screw, foot]) part.castShadow = part.receiveShadow = true;
+      this.content.add(clamp, screw, foot);
+    }
   }
 }

@@ -154,7 +154,7 @@ export class FieldView {
     for (const reticle of this.reticles) {
       reticle.style.display = this.reticleOn ? "" : "none";
       reticle.innerHTML = `<g fill="none"><path d="M-340 0H-36M36 0H340M0 -340V-36M0 36V340${marks.join("")}" class="ink"/><circle r="5" class="ink"/></g>
-        <path d="M${-half} 398v12h${2 * half}v-12" fill="none" class="ink bar"/><text y="438" text-anchor="middle">${text}</text>
+        <path d="M${-half} 398v12h${2 * half}v-12" fill="none" class="ink bar"/><text y="388" text-anchor="middle">${text}</text>
         <text y="-415" text-anchor="middle" class="mag">${magnification.toFixed(1)}×</text>`;
     }
   }

@@ -9,6 +9,7 @@ export function clock(seconds: number): string {
 /// [N] -> "123 mN", with three significant figures below 10 mN.
 export function milliNewton(newton: number): string {
   const value = newton * 1000;
+  if (value === 0) return "0 mN";
   const digits = Math.abs(value) >= 10 ? 0 : Math.abs(value) >= 1 ? 1 : 2;
   return `${value.toFixed(digits)} mN`;
 }

@@ -63,13 +63,13 @@ export class ForcePanel {
 
   constructor(scene: Scene) {
     this.strength = scene.thread_strength;
-    this.thread = new Meter("Thread tension", scene.thread_strength > 0 ? 1.1 * scene.thread_strength : null,
+    this.thread = new Meter("Tension", scene.thread_strength > 0 ? 1.1 * scene.thread_strength : null,
       `breaks at ${milliNewton(scene.thread_strength)}`);
     this.element.append(h("h2", {}, "Thread"), h("p", { class: "quiet" }, `${scene.suture} · ${(2e6 * scene.thread_radius).toFixed(0)} µm · breaks at ${milliNewton(scene.thread_strength)}`), this.thread.element);
     this.tools = scene.tools.map((tool, index) => {
       const grip = new Meter("Grip", null, null), pull = new Meter("Pull of the thread", null, null);
       const state = h("span", { class: "tag" }, "");
-      const box = h("div", { class: "tool" }, h("h2", {}, h("span", { class: `bands b${index}`, "aria-hidden": "true" }), toolTitle(tool.name), state), grip.element, pull.element);
+      const box = h("div", { class: "tool" }, h("h2", {}, h("span", { class: `bands b${index}`, "aria-hidden": "true" }), toolTitle(tool.name), state), ...(tool.kind === "scissors" ? [] : [grip.element, pull.element]));
       this.element.append(box);
       return { grip, pull, state, box };
     });
