@@ -14,7 +14,9 @@ void InputMerge::take(const DeviceSample& sample, int source, std::int64_t stale
   Tool& tool = tools_[static_cast<std::size_t>(sample.tool)];
   const std::int64_t from = sample.host_time_us, until = from + stale_after_us;
   const auto put = [&](auto& reading, const auto& value) {
-    if (from >= reading.from_us) reading = {value, from, until, source};
+    const bool first_in_line = source < reading.source && until >= reading.from_us;
+    const bool newer = source == reading.source && from >= reading.from_us;
+    if (first_in_line || newer || !reading.holds(from)) reading = {value, from, until, source};
   };
   if (sample.has_pose) put(tool.X_WD, Pose{sample.X_WD.p, sample.X_WD.q.normalized()});
   if (sample.has_grip_angle) {

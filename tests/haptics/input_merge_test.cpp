@@ -53,11 +53,30 @@ TEST(InputMerge, JoinsAnArmAndForceps) {
   EXPECT_FALSE(merge.inputs(1000).tools[1].valid);
 }
 
-TEST(InputMerge, TheNewestReadingCountsWhateverTheOrder) {
+TEST(InputMerge, TheNewestReadingOfADeviceCountsWhateverTheOrder) {
   InputMerge merge;
   merge.take(pose(2000, {2e-3, 0, 0}), 0, kStale);
-  merge.take(pose(1000, {1e-3, 0, 0}), 1, kStale);
+  merge.take(pose(1000, {1e-3, 0, 0}), 0, kStale);
   EXPECT_EQ(merge.inputs(2000).tools[0].X_WD.p.x(), 2e-3);
+}
+
+TEST(InputMerge, TheFirstDeviceIsBelievedAsLongAsItSpeaks) {
+  InputMerge merge;
+  const auto angle = [&](std::int64_t now) { return merge.inputs(now).tools[0].grip_angle; };
+  merge.take(pose(0, {0, 0, 0}), 1, 10 * kStale);  // a pointer that also guesses the grip
+  merge.take(grip(0, 0.3), 1, 10 * kStale);
+  EXPECT_EQ(angle(0), 0.3);
+  merge.take(grip(1000, 0.1), 0, kStale);  // forceps
+  EXPECT_EQ(angle(1000), 0.1);
+  merge.take(grip(2000, 0.31), 1, 10 * kStale);
+  EXPECT_EQ(angle(2000), 0.1) << "the pointer does not talk over the forceps";
+  merge.take(grip(200'000, 0.32), 1, 10 * kStale);
+  EXPECT_EQ(angle(200'000), 0.32) << "the forceps fell silent";
+  merge.take(grip(201'000, 0.12), 0, kStale);
+  EXPECT_EQ(angle(201'000), 0.12);
+  merge.drop(0);
+  merge.take(grip(201'500, 0.33), 1, 10 * kStale);
+  EXPECT_EQ(angle(201'500), 0.33);
 }
 
 TEST(InputMerge, AgeMakesInvalidAndKeepsTheLastPose) {
