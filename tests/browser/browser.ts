@@ -3,14 +3,25 @@ import { spawn, type ChildProcess } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+import { connect, createServer, type Socket } from "node:net";
 import { chromium, type BrowserContext, type Page } from "playwright-core";
+import type { Frame } from "@viewer/messages";
 
+const kRepository = fileURLToPath(new URL("../..", import.meta.url));
 const kFlags = ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run",
   "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 
-export interface Opened { page: Page; trouble: string[]; close(): Promise<void> }
+type Message = { type: string } & Record<string, unknown>;
+export interface Opened {
+  page: Page;
+  trouble: string[]; // errors that a user could only find in the console
+  received: Message[]; // what came over the WebSocket; of the frames only the newest
+  frame(): Frame | undefined;
+  close(): Promise<void>;
+}
 
-/// A page in a browser of its own with a fresh profile. `trouble` collects errors that a user could only find in the console.
+/// A page in a browser of its own with a fresh profile.
 export async function openPage(address: string): Promise<Opened> {
   const profile = mkdtempSync(join(tmpdir(), "filum-chromium-"));
   const context: BrowserContext = await chromium.launchPersistentContext(profile, {
@@ -23,21 +34,26 @@ export async function openPage(address: string): Promise<Opened> {
   page.on("console", (message) => {
     if (message.type() === "error" && !/WebSocket connection|ERR_CONNECTION/.test(message.text())) trouble.push(message.text());
   });
+  const received: Message[] = [];
+  let frame: Frame | undefined;
+  page.on("websocket", (socket) => socket.on("framereceived", ({ payload }) => {
+    const message = JSON.parse(String(payload)) as Message;
+    if (message.type === "frame") frame = message as unknown as Frame;
+    else received.push(message);
+  }));
   await page.goto(address);
-  return { page, trouble, close: async () => { await context.close(); rmSync(profile, { recursive: true, force: true }); } };
+  return { page, trouble, received, frame: () => frame, close: async () => { await context.close(); rmSync(profile, { recursive: true, force: true }); } };
 }
 
 export const trainerProgram = process.env.FILUM_BIN ?? "";
-export const hasTrainer = trainerProgram !== "" && existsSync(trainerProgram);
+export const hasTrainer = trainerProgram !== "" && existsSync(resolve(kRepository, trainerProgram));
 
 export interface Trainer { address: string; folder: string; stop(): Promise<void> }
 
 /// Starts the real program on a free port with a store of its own and waits for the address it prints.
 export async function startTrainer(): Promise<Trainer> {
   const folder = mkdtempSync(join(tmpdir(), "filum-store-"));
-  const child: ChildProcess = spawn(resolve(trainerProgram), ["train", "--port", "0"], {
-    env: { ...process.env, FILUM_STORE: folder, XDG_DATA_HOME: folder, HOME: folder }, stdio: ["ignore", "pipe", "pipe"],
-  });
+  const child: ChildProcess = spawn(resolve(kRepository, trainerProgram), ["train", "--port", "0", "--store", folder], { stdio: ["ignore", "pipe", "pipe"] });
   let said = "";
   const address = await new Promise<string>((done, fail) => {
     const listen = (data: Buffer) => {
@@ -57,6 +73,24 @@ export async function startTrainer(): Promise<Trainer> {
     child.kill("SIGTERM");
   });
   return { address, folder, stop };
+}
+
+/// A line between browser and trainer that can be cut: all connections at once, as when a cable is pulled.
+export async function cuttableLine(address: string): Promise<{ address: string; cut(): void; close(): Promise<void> }> {
+  const open = new Set<Socket>(), port = Number(new URL(address).port);
+  const server = createServer((near) => {
+    const far = connect(port, "127.0.0.1");
+    for (const [one, other] of [[near, far], [far, near]]) {
+      open.add(one);
+      one.pipe(other);
+      one.on("error", () => other.destroy());
+      one.on("close", () => { open.delete(one); other.destroy(); });
+    }
+  });
+  await new Promise<void>((done) => server.listen(0, "127.0.0.1", done));
+  const cut = () => { for (const socket of open) socket.destroy(); };
+  const at = server.address() as { port: number };
+  return { address: `http://127.0.0.1:${at.port}/`, cut, close: () => { cut(); return new Promise((done) => server.close(() => done())); } };
 }
 
 /// Waits until `read` gives something that `good` accepts, and returns it.
