@@ -12,10 +12,10 @@
 namespace filum {
 namespace {
 
-KnotDiagram smallest_diagram(const Points& nodes, const Closure& closure, std::uint64_t seed) {
+KnotDiagram smallest_diagram(const Points& nodes, const Closure& closure, std::uint64_t seed, int directions) {
   GridPolygon polygon = to_grid(close_curve(nodes, closure), seed);
   shrink(polygon);
-  return project_best(polygon, seed, 12);
+  return project_best(polygon, seed, directions);
 }
 
 struct Vote {
@@ -30,7 +30,7 @@ Vote elect(const Points& nodes, const KnotOptions& options, int& n_votes) {
   const std::vector<Closure> closures = free_closures(nodes, options.closures);
   n_votes = static_cast<int>(closures.size());
   for (const Closure& closure : closures) {
-    KnotDiagram diagram = smallest_diagram(nodes, closure, options.seed);
+    KnotDiagram diagram = smallest_diagram(nodes, closure, options.seed, 12);
     const Laurent jones = jones_polynomial(diagram);
     auto same = std::find_if(votes.begin(), votes.end(), [&](const Vote& v) { return v.jones == jones; });
     if (same == votes.end()) same = votes.insert(votes.end(), Vote{diagram, jones, 0});
@@ -110,7 +110,7 @@ KnotReport classify_knot(const Points& nodes, double radius, const PostShape* po
 }
 
 Laurent jones_of_thread(const Points& nodes, std::uint64_t seed) {
-  return jones_polynomial(smallest_diagram(nodes, free_closures(nodes, 1).front(), seed));
+  return jones_polynomial(smallest_diagram(nodes, free_closures(nodes, 1).front(), seed, 3));
 }
 
 }  // namespace filum

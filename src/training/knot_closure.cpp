@@ -75,7 +75,10 @@ Points close_curve(const Points& nodes, const Closure& closure) {
   const Vec3 back = exit_point(nodes.col(0), closure.first, centre, far);
   // Round the sphere by way of the middle direction, so that no chord comes near the thread.
   Vec3 middle = (out - centre) + (back - centre);
-  if (middle.norm() < far) middle = (out - centre).unitOrthogonal();
+  if (middle.norm() < far) {
+    middle = (out - centre).cross(back - centre);
+    if (middle.norm() < 1e-3 * far * far) middle = (out - centre).unitOrthogonal();
+  }
   Points closed(3, n + 3);
   closed.leftCols(n) = nodes;
   closed.col(n) = out;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -73,22 +72,23 @@ double turning(const Points& nodes, const Run& run, double chord) {
   return sum;
 }
 
-/// How often each set of throws is left when a tail is drawn back.
-using Tally = std::map<std::vector<int>, int>;
+/// Sets of throws (each sorted) that are left as a tail is drawn back further and further.
+using Undoing = std::vector<std::vector<int>>;
 
-void draw_back(const Points& nodes, int begin, int end, bool first_tail, std::uint64_t seed, Tally& left) {
-  constexpr int kSamples = 24;
+Undoing draw_back(const Points& nodes, int begin, int end, bool first_tail, std::uint64_t seed) {
+  constexpr int kSamples = 32;
+  Undoing left;
   const int span = end - begin;
   for (int k = 1, last = 0; k < kSamples; ++k) {
     const int cut = static_cast<int>(std::lround(0.55 * span * k / kSamples));
     if (cut == last || span - cut < 4) continue;
     last = cut;
     const int from = first_tail ? begin + cut : begin;
-    std::vector<int> rest = throws_of(jones_of_thread(nodes.middleCols(from, span - cut + 1), seed));
-    std::sort(rest.begin(), rest.end());
-    ++left[rest];
-    if (rest.empty()) break;
+    left.push_back(throws_of(jones_of_thread(nodes.middleCols(from, span - cut + 1), seed)));
+    std::sort(left.back().begin(), left.back().end());
+    if (left.back().empty()) break;
   }
+  return left;
 }
 
 /// The throw by which `more` exceeds `less`; 0 if it does so by anything else than one. Both sorted.
@@ -98,23 +98,19 @@ int one_more(const std::vector<int>& more, const std::vector<int>& less) {
   return difference.size() == 1 && more.size() == less.size() + 1 ? difference.front() : 0;
 }
 
-/// From the post outwards: which throw went each time one went; empty if some step was never seen.
-std::vector<int> order_undone(std::vector<int> members, const Tally& left) {
+/// From the post outwards: which throw went each time one went, each state seen `looks` times running; empty if some
+/// state was not. The first state that fits counts: a double throw that is half undone looks like a single one later on.
+std::vector<int> order_undone(std::vector<int> members, const Undoing& left, std::size_t looks) {
   std::vector<int> outside_in;
-  while (members.size() > 1) {
-    int most = 0, undone = 0;
-    std::vector<int> rest;
-    for (const auto& [set, count] : left) {
-      const int removed = one_more(members, set);
-      if (removed == 0 || count <= most) continue;
-      most = count;
-      undone = removed;
-      rest = set;
-    }
-    if (undone == 0) return {};
+  for (std::size_t k = 0; members.size() > 1 && k + looks <= left.size(); ++k) {
+    const int undone = one_more(members, left[k]);
+    const auto same = [&](const std::vector<int>& set) { return set == left[k]; };
+    const auto begin = left.begin() + static_cast<std::ptrdiff_t>(k);
+    if (undone == 0 || !std::all_of(begin, begin + static_cast<std::ptrdiff_t>(looks), same)) continue;
     outside_in.push_back(undone);
-    members = rest;
+    members = left[k];
   }
+  if (members.size() > 1) return {};
   outside_in.insert(outside_in.end(), members.begin(), members.end());
   return {outside_in.rbegin(), outside_in.rend()};
 }
@@ -123,17 +119,25 @@ std::vector<int> order_undone(std::vector<int> members, const Tally& left) {
 
 std::vector<int> unravel(const Points& nodes, std::vector<int> members, std::uint64_t seed, const KnotReport& report) {
   std::sort(members.begin(), members.end());
-  Tally left;
-  for (const bool first_tail : {true, false}) {
-    draw_back(nodes, report.core_begin, report.core_end, first_tail, seed, left);
-    const std::vector<int> order = order_undone(members, left);
-    if (!order.empty()) return order;
+  const Undoing first = draw_back(nodes, report.core_begin, report.core_end, true, seed);
+  const std::vector<int> order = order_undone(members, first, 2);
+  if (!order.empty()) return order;
+  const Undoing last = draw_back(nodes, report.core_begin, report.core_end, false, seed);
+  for (const std::size_t looks : {2u, 1u}) {
+    for (const Undoing* left : {&last, &first}) {
+      const std::vector<int> found = order_undone(members, *left, looks);
+      if (!found.empty()) return found;
+    }
   }
   return {};
 }
 
 void find_core(const Points& nodes, const Laurent& jones, std::uint64_t seed, KnotReport& report) {
   int begin = 0, end = static_cast<int>(nodes.cols()) - 1;
+  report.core_begin = begin;
+  report.core_end = end;
+  // Where the freest closure gives another knot than the vote did, the whole thread is the best that can be said.
+  if (!same_knot(nodes, begin, end, jones, seed)) return;
   for (int low = begin, high = end; high - low > 1;) {
     const int middle = (low + high) / 2;
     (same_knot(nodes, middle, end, jones, seed) ? low : high) = middle;

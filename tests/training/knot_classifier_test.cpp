@@ -74,8 +74,8 @@ INSTANTIATE_TEST_SUITE_P(
     Knots, KnownKnot,
     testing::Values(
         Case{"untied", throws({}), "unknot", "", -1},                                      //
-        Case{"overhand_right", throws({-3}), "overhand", "1", 1},                          //
-        Case{"overhand_left", throws({3}), "overhand", "1", 1},                            //
+        Case{"overhand_right", throws({3}), "overhand", "1", 1},                          //
+        Case{"overhand_left", throws({-3}), "overhand", "1", 1},                            //
         Case{"square", throws({3, -3}), "square", "1=1", 1},                               //
         Case{"square_mirrored", throws({-3, 3}), "square", "1=1", 1},                      //
         Case{"granny", throws({3, 3}), "granny", "1x1", 1},                                //
@@ -125,6 +125,12 @@ TEST(KnotClassifier, SeparatesWhatDeterminantAndAlexanderCannot) {
   EXPECT_EQ(granny.determinant, 9);
   EXPECT_EQ(square.alexander, granny.alexander);
   EXPECT_NE(square.jones, granny.jones);
+}
+
+TEST(KnotClassifier, ReportsTheHandOfEveryThrow) {
+  EXPECT_EQ(classify_knot(throws_round_post({3}), kRadius, nullptr).throws, (std::vector<int>{3}));
+  EXPECT_EQ(classify_knot(throws_round_post({-5, 3}), kRadius, nullptr).throws, (std::vector<int>{-5, 3}));
+  EXPECT_EQ(classify_knot(throws_round_post({-3, -3, 3}), kRadius, nullptr).throws, (std::vector<int>{-3, -3, 3}));
 }
 
 TEST(KnotClassifier, GoodSquareKnotTurnsBothStrandsAlike) {

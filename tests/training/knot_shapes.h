@@ -30,7 +30,7 @@ inline PostShape post() {
 }
 
 /// Two strands twisted about a horizontal axis at each throw, stacked upwards from the post. half_twists: +-3 single
-/// throw, +-5 double. gap: distance of the strands' centrelines within a throw.
+/// throw, +-5 double, + right-handed. gap: distance of the strands' centrelines within a throw.
 inline Points throws_round_post(const std::vector<int>& half_twists, double gap = 60e-6, int nodes_per_twist = 6) {
   const double r = 0.5 * gap, pitch = 2.0 * gap;  // length along the axis for one half-twist
   const double rise = 4.0 * gap;
@@ -41,7 +41,7 @@ inline Points throws_round_post(const std::vector<int>& half_twists, double gap 
     strands[1] = {Vec3(pitch, 0, 0)};
   }
   for (std::size_t level = 0; level < half_twists.size(); ++level) {
-    const int n = std::abs(half_twists[level]), hand = half_twists[level] > 0 ? 1 : -1;
+    const int n = std::abs(half_twists[level]), hand = half_twists[level] > 0 ? -1 : 1;
     const double z = rise * static_cast<double>(level), width = 0.5 * n * pitch;
     for (int s = 0; s < 2; ++s) {
       // Strand s enters on this side, low, and leaves on the other side, high.
