@@ -1,5 +1,7 @@
 #include "haptics/haptic_loop.h"
 
+#include <pthread.h>
+#include <sched.h>
 #include <time.h>
 
 #include <algorithm>
@@ -9,6 +11,13 @@
 
 namespace filum {
 namespace {
+
+/// A tick takes microseconds and the thread sleeps after each, so nothing else starves.
+bool run_before_others() noexcept {
+  sched_param priority{};
+  priority.sched_priority = 20;
+  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0;
+}
 
 constexpr std::uint64_t kStatsEvery = 128;  // ticks between two looks at the histogram
 
@@ -119,6 +128,7 @@ void HapticLoop::stop() noexcept {
 }
 
 void HapticLoop::run(std::int64_t epoch_us) noexcept {
+  now_.real_time = options_.real_time && run_before_others();
   std::int64_t next = steady_now_us();
   while (!stop_asked_.load(std::memory_order_relaxed)) {
     const timespec due{static_cast<time_t>(next / 1'000'000), static_cast<long>(next % 1'000'000) * 1000};

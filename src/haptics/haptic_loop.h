@@ -46,6 +46,7 @@ struct HapticReport {
   int n_devices = 0;
   std::array<DeviceHealth, InputMerge::kMaxSources> devices;
   std::uint64_t samples_dropped = 0;  // samples the recorder did not take in time
+  bool real_time = false;             // the thread runs before ordinary ones: root, or rtprio in limits.conf
   std::uint64_t missed = 0;           // ticks skipped because the thread came too late
   std::int64_t period_p50_us = 0, period_p99_us = 0, period_max_us = 0;  // [us]
 };
@@ -54,6 +55,7 @@ struct HapticOptions {
   HandCouplingOptions coupling;
   std::int64_t period_us = 1000;          // [us]
   std::int64_t world_silent_us = 50'000;  // [us] without a new state of the tools: no force
+  bool real_time = true;                  // run before ordinary threads where that is allowed
   std::size_t sample_queue = 16384;       // samples kept for the recorder
 };
 
