@@ -173,3 +173,15 @@ it("is used from start to replay with the keyboard alone, and shows where the fo
   await until(time, (now) => now > 0.5, "plays");
   expect(opened.trouble).toEqual([]);
 });
+
+it("keeps tasks and sessions usable where the browser cannot draw in three dimensions", async () => {
+  const { page } = opened;
+  await page.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
+  await page.goto(`${mock.address}#/live`);
+  await page.reload();
+  await page.waitForSelector("[role=alert]");
+  expect(await page.textContent("main [role=alert]")).toContain("WebGL 2");
+  await page.click("a[href='#/sessions']");
+  await page.waitForSelector("tr[data-session]");
+  expect(await page.locator("tr[data-session]").count()).toBe(2);
+});

@@ -140,7 +140,12 @@ export class App {
     const make = this.routes[name] ?? this.routes[""];
     this.page?.dispose?.();
     this.main.replaceChildren();
-    this.page = make(this, decodeURIComponent(rest.join("/")));
+    try {
+      this.page = make(this, decodeURIComponent(rest.join("/")));
+    } catch (error) { // most likely no WebGL 2: the rest of the viewer works without
+      this.page = { title: "Not possible here", element: h("div", { class: "page" }, h("h1", {}, "This page cannot be shown in this browser"),
+        h("p", { role: "alert" }, `${(error as Error).message} A browser with WebGL 2 is needed for the microscope; tasks, sessions and results work without.`), h("a", { class: "button", href: "#/" }, "Tasks")) };
+    }
     document.title = `${this.page.title} · Filum`;
     this.main.append(this.page.element);
     this.main.dataset.page = name || "tasks";

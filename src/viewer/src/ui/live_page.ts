@@ -58,6 +58,7 @@ export class LivePage implements Page {
       case "frame": this.showFrame(); break;
       case "event": this.addEvent(message.event); break;
       case "result": this.showEnd(); break;
+      case "error": this.showRefusal(message.what, message.advice); break;
       default: break;
     }
   }
@@ -95,7 +96,7 @@ export class LivePage implements Page {
     this.pointer.hands.hands.length = 0;
     if (!scene) {
       this.steps = this.forces = null;
-      this.over.append(h("p", { class: "loading", role: "status" }, "Loading the scene…"));
+      this.showLoading();
       return;
     }
     this.steps = new StepPanel(scene.title);
@@ -111,6 +112,7 @@ export class LivePage implements Page {
     this.pointer.enabled = this.app.online && this.steering;
     if (!this.steering) this.pointer.hands.hands.length = 0;
     this.element.dataset.state = session?.state ?? "idle";
+    if (session?.state === "loading") this.showLoading();
     if (session?.state === "idle" && !this.app.result) {
       this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", {}, "No task is running."), h("a", { class: "button", href: "#/" }, "Choose a task")));
     }
@@ -118,6 +120,17 @@ export class LivePage implements Page {
     const others = session !== null && session.state === "running" && !session.in_control;
     this.take.hidden = !others;
     this.showHand();
+  }
+
+  private showLoading(): void {
+    this.over.replaceChildren(h("p", { class: "loading", role: "status" }, "Loading the scene…"));
+  }
+
+  /// A refused start leaves nothing to wait for.
+  private showRefusal(what: string, advice: string): void {
+    const state = this.app.session?.state;
+    if (state === "running" || state === "replay") return;
+    this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", { class: "big" }, "Not started"), h("p", {}, `${what} ${advice}`), h("a", { class: "button", href: "#/" }, "Choose a task")));
   }
 
   private showFrame(): void {

@@ -56,6 +56,18 @@ export class PathPlot {
     return [width / 2 + scale * u, height / 2 - scale * (Math.sin(this.rise) * v + Math.cos(this.rise) * c)];
   }
 
+  /// Largest scale [pixel/mm] at which the box round all paths is in the picture, with room for the words.
+  private fitting(width: number, height: number): number {
+    let across = 1, up = 1;
+    for (let corner = 0; corner < 8; ++corner) {
+      const [x, y, z] = [0, 1, 2].map((k) => ((corner >> k) & 1 ? this.high[k] : this.low[k]));
+      const [u, v] = this.project(x, y, z, 1, 0, 0);
+      across = Math.max(across, Math.abs(u));
+      up = Math.max(up, Math.abs(v));
+    }
+    return 0.5 * Math.min((width - 60) / across, (height - 50) / up);
+  }
+
   private draw(): void {
     const ratio = window.devicePixelRatio || 1;
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
@@ -64,8 +76,7 @@ export class PathPlot {
     this.canvas.height = height * ratio;
     const g = this.canvas.getContext("2d")!;
     g.scale(ratio, ratio);
-    const extent = Math.hypot(...[0, 1, 2].map((k) => this.high[k] - this.low[k]));
-    const scale = (0.92 * Math.min(width, height)) / Math.max(1, extent);
+    const scale = this.fitting(width, height);
     const to = (x: number, y: number, z: number) => this.project(x, y, z, scale, width, height);
     this.drawGrid(g, to);
     this.paths.forEach((path, i) => {

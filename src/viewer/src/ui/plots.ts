@@ -34,7 +34,7 @@ export function drawChart(holder: HTMLElement, data: ChartData, events: readonly
     width: Math.max(280, holder.clientWidth), height: 230,
     scales: { x: { time: false } },
     cursor: { y: false },
-    legend: { live: true },
+    legend: { live: true, markers: { width: 2, dash: (_, i) => (i < 2 ? "solid" : i % 2 === 0 ? "dashed" : "dotted") } },
     axes: [{ ...axis, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(2)} s`) },
       { ...axis, size: 64, label: data.unit || "value", labelFont: "12px system-ui, sans-serif", labelSize: 18 }],
     series: [{ label: "Time", value: (_, v) => (v === null ? "" : `${v.toFixed(2)} s`) }, ...data.titles.map((title, i) => ({

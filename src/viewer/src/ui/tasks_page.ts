@@ -82,7 +82,6 @@ export class TasksPage implements Page {
       const sent = app.send({ type: "start", task: task.name, input, ...(code.value ? { code: code.value } : {}), ...(others ? { take_over: over.checked } : {}) });
       if (!sent) { setText(trouble, "No connection to the trainer. Try again in a moment."); return; }
       app.result = null;
-      app.scene = null;
       dialog.close();
       app.go("#/live");
     } },
