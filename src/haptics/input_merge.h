@@ -16,8 +16,9 @@ class InputMerge {
  public:
   static constexpr int kMaxSources = 8;
 
-  /// A sample of device number `source`; it holds for `stale_after_us` [us] from its host_time_us. Where several
-  /// devices measure the same thing of a tool, the one with the lowest number is believed as long as it speaks.
+  /// A sample of device number `source`; it holds for `stale_after_us` [us] from its host_time_us. Where
+  /// several devices measure the same thing of a tool, the one with the lowest number is believed as long as
+  /// it speaks.
   void take(const DeviceSample& sample, int source, std::int64_t stale_after_us) noexcept;
   /// The device is gone: nothing it said is true any more.
   void drop(int source) noexcept;

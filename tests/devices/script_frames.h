@@ -48,8 +48,6 @@ class ScriptFrames {
     filum_put_pong(&frame, &pong);
     return finish(frame, t);
   }
-  /// Leaves a gap as a lost frame would.
-  void skip() { ++sequence_; }
 
  private:
   static std::uint8_t flags_of(const DeviceSample& sample) {
