@@ -4,7 +4,7 @@ import type { Materials } from "@viewer/scene/materials";
 import type { ToolShape, ToolState } from "@viewer/messages";
 
 const plain = new THREE.MeshBasicMaterial();
-const materials: Materials = { bright: plain, dark: plain, black: plain, grip: plain, bands: [plain, plain, plain], post: plain, sheet: plain, thread: plain };
+const materials: Materials = { bright: plain, clamp: plain, dark: plain, black: plain, grip: plain, bands: [plain, plain, plain], post: plain, sheet: plain, thread: plain };
 const shape = (kind: ToolShape["kind"]): ToolShape => ({ name: kind, kind, jaw_length: 8e-3, tip_radius: 0.15e-3, base_radius: 0.6e-3, pad_length: 1.5e-3, max_angle: 0.5 });
 const state = (grip_angle: number): ToolState => {
   const pose: ToolState["pose"] = { position: [0, 0, 0], quaternion: [1, 0, 0, 0] };

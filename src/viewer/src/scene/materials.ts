@@ -6,7 +6,8 @@ import { brushedTextures, sheetTextures } from "./textures";
 export const kSheet = 120; // [mm], width of the background sheet
 
 export interface Materials {
-  bright: THREE.Material; // titanium forceps, post collars
+  bright: THREE.Material; // titanium forceps
+  clamp: THREE.Material; // blasted steel that carries the post
   dark: THREE.Material; // needle holder
   black: THREE.Material; // feet of the post
   grip: THREE.Material; // hard metal inserts
@@ -26,6 +27,7 @@ export function physicalMaterials(): Materials {
   });
   return {
     bright: metal(0xd3d7dc, 0.34, 0.45),
+    clamp: new THREE.MeshStandardMaterial({ color: 0x6f767c, metalness: 0.85, roughness: 0.62 }),
     dark: metal(0xa6a29a, 0.36, 0.4),
     black: new THREE.MeshStandardMaterial({ color: 0x1b2022, metalness: 0.55, roughness: 0.5 }),
     grip: metal(0xb99a5e, 0.62, 1.4),
@@ -58,6 +60,7 @@ export function paintedMaterials(): Materials {
   return {
     bright: painted([0, "#ffffff"], [0.14, "#eef1f4"], [0.34, "#a9b0b8"], [0.55, "#6b727a"], [0.78, "#9aa1a9"], [1, "#30363c"]),
     dark: painted([0, "#fffdf6"], [0.12, "#dedad0"], [0.3, "#8f8b84"], [0.55, "#55524d"], [0.8, "#86827b"], [1, "#24221f"]),
+    clamp: lit("#9aa2a9", "#3c4349"),
     black: lit("#3a4144", "#0c0f10"),
     grip: painted([0, "#fff3cf"], [0.25, "#c7a868"], [0.6, "#7a633a"], [1, "#33280f"]),
     bands: [lit("#2e83e6", "#0a2f5e"), lit("#f0a52e", "#6b4000"), lit("#a258bd", "#35103f")],

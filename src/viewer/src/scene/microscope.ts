@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import type { Frame, Scene } from "../messages";
 import { FinishPass } from "./finish_pass";
-import { blurDiameter, eyeAt, fieldDiameter, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
+import { blurDiameter, eyeAt, fieldDiameter, kMagnificationStart, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
 import { isSoftwareRenderer, QualityChooser } from "./quality";
 import { Stage } from "./stage";
 
@@ -15,7 +15,7 @@ export class Microscope {
   readonly stage: Stage;
   readonly quality: QualityChooser;
   readonly rendererName: string;
-  readonly optics: OpticsState = { magnification: 10, focus: 0, centre: [0, 0], tilt: 0.21, eyeDistance: 22 };
+  readonly optics: OpticsState = { magnification: kMagnificationStart, focus: 0, centre: [0, 0], tilt: 0.21, eyeDistance: 22 };
   stereo: StereoMode = "mono";
   lastFrameTime = 0; // [ms], from one drawn frame to the next
   private readonly renderer: THREE.WebGLRenderer;

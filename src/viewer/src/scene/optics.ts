@@ -11,6 +11,7 @@ export interface OpticsState {
 
 export const kMagnificationMin = 5;
 export const kMagnificationMax = 40;
+export const kMagnificationStart = 8; // both hands at rest are in the field
 export const kWorkingDistance = 200; // [mm], objective to focal plane
 export const kFieldNumber = 200; // [mm], field diameter times magnification
 export const kAperture = 14; // [mm], of one beam path at the objective; sets the depth of field

@@ -154,7 +154,7 @@ export class Stage {
     for (const end of [-1, 1]) {
       const at = new THREE.Vector3(...post.position).addScaledVector(axis, end * post.half_length).multiplyScalar(kMm);
       const height = at.z + 1.6 * radius - this.floorHeight;
-      const clamp = new THREE.Mesh(new RoundedBoxGeometry(3.6 * radius, 2.2 * radius, height, 5, 0.45 * radius), this.materials.bright);
+      const clamp = new THREE.Mesh(new RoundedBoxGeometry(3.6 * radius, 2.2 * radius, height, 5, 0.45 * radius), this.materials.clamp);
       clamp.position.set(at.x, at.y, this.floorHeight + height / 2);
       clamp.rotation.z = Math.atan2(axis.y, axis.x) - Math.PI / 2;
       const screw = new THREE.Mesh(new THREE.CylinderGeometry(0.75 * radius, 0.75 * radius, 0.3 * radius, 32), this.materials.black);
