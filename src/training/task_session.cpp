@@ -23,6 +23,7 @@ double largest_tension(const Observation& o) {
 TaskSession::TaskSession(Task task, const SceneDescription& scene)
     : task_(std::move(task)), scene_(scene), recogniser_(task_, scene_), log_(scene.n_tools, task_.time_limit) {
   events_.reserve(kMaxEvents);
+  for (auto& kind : last_kept_) kind.fill(-1.0);
 }
 
 bool TaskSession::scoring_paused(const Observation& o) {
@@ -36,10 +37,23 @@ bool TaskSession::scoring_paused(const Observation& o) {
   return lost || !any;
 }
 
+/// Events that may come every step are kept only every kEventPause for each tool; all others are kept.
+bool TaskSession::crowds_out(const WorldEvent& e, double time) {
+  constexpr std::array<std::string_view, 4> kFrequent = {"overrun", "slip", "solver-trouble", "thread-overload"};
+  const auto kind = std::find(kFrequent.begin(), kFrequent.end(), e.name);
+  if (kind == kFrequent.end()) return false;
+  const auto tool = static_cast<std::size_t>(std::clamp(e.tool + 1, 0, 3));
+  double& last = last_kept_[static_cast<std::size_t>(kind - kFrequent.begin())][tool];
+  if (last >= 0.0 && time - last < kEventPause) return true;
+  last = time;
+  return false;
+}
+
 void TaskSession::take_events(const Observation& o) {
-  for (int k = 0; k < o.n_events && events_.size() < kMaxEvents; ++k) {
+  for (int k = 0; k < o.n_events; ++k) {
     const WorldEvent& e = o.events[static_cast<std::size_t>(k)];
-    events_.push_back({o.time, e.name, e.tool, e.value, e.unit, {}});
+    if (crowds_out(e, o.time)) continue;
+    if (events_.size() < kMaxEvents) events_.push_back({o.time, e.name, e.tool, e.value, e.unit, {}});
   }
 }
 

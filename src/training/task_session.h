@@ -5,6 +5,7 @@
 // instrument that was driven before is not (input_valid false), or none is. After the last step scoring stops; only the knot
 // is still taken from the newest observation.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,7 +41,8 @@ class TaskSession {
 
   void observe(const Observation& o) noexcept;
   TaskStatus status() const;
-  /// Events since the start, in order; at most kMaxEvents, later ones are counted only.
+  /// Events since the start, in order, at most kMaxEvents of the world's. Events that may come every step ("overrun", "slip",
+  /// "solver-trouble", "thread-overload") are kept once every kEventPause for each tool.
   const std::vector<TaskEvent>& events() const { return events_; }
   bool done() const { return recogniser_.done(); }
   const Task& task() const { return task_; }
@@ -49,9 +51,11 @@ class TaskSession {
   Result finish(const std::optional<SecurityTest>& security = std::nullopt) const;
 
   static constexpr std::size_t kMaxEvents = 4096;
+  static constexpr double kEventPause = 0.25;  // [s]
 
  private:
   bool scoring_paused(const Observation& o);
+  bool crowds_out(const WorldEvent& e, double time);
   void take_events(const Observation& o);
   void take_sample(const Observation& o);
   std::vector<TaskWarning> warnings() const;
@@ -67,6 +71,7 @@ class TaskSession {
   bool paused_ = true;
   bool failed_ = false;          // watching failed (out of memory): scoring stopped, said in the result
   std::array<bool, 3> driven_{};  // instrument has had a valid input
+  std::array<std::array<double, 4>, 4> last_kept_{};  // [s], of each frequent kind and tool (from -1), -1 never
   double previous_time_ = -1.0;  // [s]
   double elapsed_ = 0.0;         // [s], scored
   double tension_ = 0.0;         // [N], largest since the last sample

@@ -182,7 +182,10 @@ TEST(TaskSession, CountsDropsAndKeepsWorldEvents) {
   const Result r = run.session.finish(kHeld);
   EXPECT_EQ(r.measures.drops, 2);
   EXPECT_NEAR(item(r, "drops").points, 2.5, 1e-9);
-  for (int k = 0; k < 5000; ++k) run.world_event("slip");
+  const std::size_t before = run.session.events().size();
+  for (int k = 0; k < 5000; ++k) run.world_event("slip");  // 10 s, one every step
+  EXPECT_EQ(run.session.events().size() - before, 40u);
+  for (int k = 0; k < 5000; ++k) run.world_event("grasp");
   EXPECT_EQ(run.session.events().size(), TaskSession::kMaxEvents);
 }
 
