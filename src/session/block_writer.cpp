@@ -95,6 +95,8 @@ BlockWriter::BlockWriter(const std::string& file, const RecordingMeta& meta, con
     sql << "PRAGMA synchronous = NORMAL";
     // A checkpoint syncs the disk, which may take longer than the 100 ms that may be lost; finish() does it.
     database::pragma(sql, "wal_autocheckpoint = 0");
+    // The first write into a fresh log syncs its header; here it delays no record.
+    impl_->put_text("meta", "log", "begun");
   } catch (const std::exception& error) {
     impl_.reset();
     std::error_code ignored;

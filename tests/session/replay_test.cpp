@@ -36,13 +36,13 @@ Inputs moving_inputs(const World& world, std::uint64_t step) {
 /// What may be changed before a record is stored, to plant a difference.
 using Change = std::function<void(StepRecord&, std::vector<std::pair<std::string, std::uint64_t>>&)>;
 
-void record_session(const std::string& file, const Change& change = {}) {
+void record_session(const std::string& file, const Change& change = {}, std::uint64_t steps = kSteps) {
   World world = fresh_world();
   RecorderOptions options = synthetic::options(file);
   options.meta.n_tools = world.description().n_tools;
   options.meta.dt = world.description().dt;
   Recorder recorder(options);
-  for (std::uint64_t i = 1; i <= kSteps; ++i) {
+  for (std::uint64_t i = 1; i <= steps; ++i) {
     StepRecord record;
     record.inputs = moving_inputs(world, i);
     world.step(record.inputs);
@@ -52,7 +52,7 @@ void record_session(const std::string& file, const Change& change = {}) {
     if (record.step % kHashEvery == 0) hashes = world.array_hashes();
     if (change) change(record, hashes);
     ASSERT_TRUE(recorder.record_step(record));
-    for (const auto& [name, hash] : hashes) ASSERT_TRUE(recorder.record_array_hash({record.step, name, hash}));
+    for (const auto& [name, hash] : hashes) ASSERT_TRUE(recorder.record_array_hash({record.step, std::string_view(name), hash}));
   }
   ASSERT_TRUE(recorder.close());
 }
@@ -90,12 +90,13 @@ TEST(Replay, NamesExactlyTheArrayThatDiffers) {
   ASSERT_GE(names.size(), 2u);
   for (const std::string& planted : names) {
     const std::string file = folder.file("differs in " + planted);
-    record_session(file, [&](StepRecord& record, auto& hashes) {
+    const auto plant = [&](StepRecord& record, auto& hashes) {
       if (record.step != 40) return;
       record.state_hash ^= 1;
       for (auto& [name, hash] : hashes)
         if (name == planted) hash ^= 1;
-    });
+    };
+    record_session(file, plant, 40);
     const ReplayResult result = replay_file(file);
     ASSERT_TRUE(result.first_difference.has_value()) << planted;
     EXPECT_EQ(result.first_difference->step, 40u);
