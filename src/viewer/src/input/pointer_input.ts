@@ -114,7 +114,8 @@ export class PointerInput {
   }
 
   private key(event: KeyboardEvent, down: boolean): void {
-    if (!this.live || event.altKey || event.metaKey) return;
+    const browsers = event.altKey || event.metaKey || (event.ctrlKey && !event.code.startsWith("Control")); // its own shortcuts
+    if (!this.live || (down && browsers)) return;
     const { hands } = this;
     this.shift = event.shiftKey;
     const first = down && !event.repeat;

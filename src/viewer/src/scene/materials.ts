@@ -20,7 +20,7 @@ export interface Materials {
 const kBands = [0x1667c4, 0xd98a12, 0x7a2f91];
 
 export function physicalMaterials(): Materials {
-  const brushed = brushedTextures(), sheet = sheetTextures(kSheet / 5);
+  const brushed = brushedTextures(), sheet = sheetTextures(kSheet / 5, 8);
   const metal = (color: number, roughness: number, scale: number) => new THREE.MeshStandardMaterial({
     color, metalness: 1, roughness, roughnessMap: brushed.rough, normalMap: brushed.normal,
     normalScale: new THREE.Vector2(scale, scale), envMapIntensity: 1.9,
@@ -65,7 +65,7 @@ export function paintedMaterials(): Materials {
     grip: painted([0, "#fff3cf"], [0.25, "#c7a868"], [0.6, "#7a633a"], [1, "#33280f"]),
     bands: [lit("#2e83e6", "#0a2f5e"), lit("#f0a52e", "#6b4000"), lit("#a258bd", "#35103f")],
     post: painted([0, "#fff8ec"], [0.3, "#ead4b8"], [0.7, "#b79c7c"], [1, "#6b5640"]),
-    sheet: new THREE.MeshBasicMaterial({ map: sheetTextures(kSheet / 5).map, color: new THREE.Color(1.75, 1.55, 1.55), toneMapped: false }),
+    sheet: new THREE.MeshBasicMaterial({ map: sheetTextures(kSheet / 5, 1).map, color: new THREE.Color(1.75, 1.55, 1.55), toneMapped: false }),
     thread: painted([0, "#8d97ab"], [0.2, "#2b3347"], [0.5, "#10141f"], [1, "#05070b"]),
   };
 }

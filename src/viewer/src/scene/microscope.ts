@@ -29,13 +29,14 @@ export class Microscope {
   private readonly eye = new THREE.Vector3();
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, stencil: true, powerPreference: "high-performance" });
+    this.rendererName = probeRenderer();
+    this.quality = new QualityChooser(isSoftwareRenderer(this.rendererName));
+    const antialias = !this.quality.software; // smooth edges cost a processor as much as all the rest
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias, stencil: true, powerPreference: "high-performance" });
     this.renderer.toneMapping = THREE.ACESFilmicToneMapping;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.autoClear = true;
-    this.rendererName = describeRenderer(this.renderer.getContext());
-    this.quality = new QualityChooser(isSoftwareRenderer(this.rendererName));
     this.stage = new Stage(this.renderer, this.quality.current.painted);
   }
 
@@ -150,7 +151,12 @@ export class Microscope {
   }
 }
 
-export function describeRenderer(gl: WebGLRenderingContext | WebGL2RenderingContext): string {
+/// What draws for this browser; asked of a small context of its own, because the choice of the real one depends on it.
+function probeRenderer(): string {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) throw new Error("WebGL 2 is missing.");
   const info = gl.getExtension("WEBGL_debug_renderer_info");
-  return String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return name;
 }

@@ -41,7 +41,7 @@ function finish(canvas: HTMLCanvasElement, repeat: number, colour: boolean): THR
   const texture = new THREE.CanvasTexture(canvas);
   texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
   texture.repeat.set(repeat, repeat);
-  texture.anisotropy = 8;
+  texture.anisotropy = 4;
   if (colour) texture.colorSpace = THREE.SRGBColorSpace;
   return texture;
 }
@@ -68,7 +68,7 @@ function normalMap(height: Float32Array, size: number, strength: number): HTMLCa
 export interface SheetTextures { map: THREE.Texture; normal: THREE.Texture; rough: THREE.Texture }
 
 /// The background sheet: soft silicone with a printed millimetre grid. One tile is `tile` mm wide.
-export function sheetTextures(tiles: number): SheetTextures {
+export function sheetTextures(tiles: number, anisotropy: number): SheetTextures {
   const size = 512;
   const noise = cloud(size, 8, 7), grain = cloud(size, 64, 11);
   const [canvas, g] = canvasOf(size);
@@ -99,8 +99,10 @@ export function sheetTextures(tiles: number): SheetTextures {
     rough.data.set([value, value, value, 255], 4 * i);
   }
   r.putImageData(rough, 0, 0);
+  const map = finish(canvas, tiles, true);
+  map.anisotropy = anisotropy;
   return {
-    map: finish(canvas, tiles, true),
+    map,
     normal: finish(normalMap(height, size, 1.6), tiles, false),
     rough: finish(roughCanvas, tiles, false),
   };
