@@ -35,6 +35,18 @@ describe("hands", () => {
     hands.message(0, 0).position.forEach((v, k) => expect(v).toBeCloseTo([-0.002, -0.002, 0.008][k]));
   });
 
+  it("change between the two hands, and take up the spare tool and put it down again", () => {
+    const hands = new Hands();
+    hands.adopt([tool(-0.003, 0.1), tool(0.003, 0.1), tool(0.01, 0.1)], [0.5, 0.5, 0.5], [false, false, true]);
+    const active = [hands.active];
+    for (const change of ["hand", "hand", "spare", "spare", "spare", "hand", "hand"]) {
+      if (change === "hand") hands.switchHand();
+      else hands.switchSpare();
+      active.push(hands.active);
+    }
+    expect(active).toEqual([1, 0, 1, 2, 1, 2, 0, 1]);
+  });
+
   it("closes while held, opens when let go, and stays when latched", () => {
     const hands = adopted();
     hands.hold(0, true);

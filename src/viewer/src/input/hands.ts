@@ -46,10 +46,14 @@ export class Hands {
   readonly hands: Hand[] = [];
   active = 0;
   private centre: Vec3 = [0, 0, 0];
+  private spare: boolean[] = [];
+  private before = 0; // the hand that was active before a spare tool was taken up
 
   /// Takes over where the instruments are, so that nothing jumps when the pointer becomes the device.
-  adopt(tools: readonly ToolState[], openings: readonly number[]): void {
+  /// `spare`: tools that lie ready beside the two hands, such as scissors.
+  adopt(tools: readonly ToolState[], openings: readonly number[], spare: readonly boolean[] = []): void {
     this.hands.length = 0;
+    this.spare = tools.map((_, i) => spare[i] ?? false);
     tools.forEach((tool, i) => {
       const open = openings[i] > 0 ? Math.min(1, tool.grip_angle / openings[i]) : 1;
       const grip = Math.max(0, 1 - open);
@@ -59,16 +63,31 @@ export class Hands {
       });
     });
     this.centre = [0, 1, 2].map((k) => this.hands.reduce((sum, hand) => sum + hand.position[k], 0) / Math.max(1, this.hands.length)) as Vec3;
-    this.active = Math.min(1, Math.max(0, this.hands.length - 1));
+    this.active = Math.max(0, this.spare.lastIndexOf(false));
+    this.before = this.active;
   }
 
   get ready(): boolean { return this.hands.length > 0; }
 
   /// The next hand becomes the active one; the hand that is left keeps its pose and its grip.
   switchHand(): void {
+    const main = this.hands.map((_, i) => i).filter((i) => !this.spare[i]);
+    if (main.length > 0) this.activate(main[(main.indexOf(this.spare[this.active] ? this.before : this.active) + 1) % main.length]);
+  }
+
+  /// Takes up the spare tool, or goes back to the hand that was active before.
+  switchSpare(): void {
+    if (this.spare[this.active]) { this.activate(this.before); return; }
+    const spare = this.spare.indexOf(true);
+    if (spare < 0) return;
+    this.before = this.active;
+    this.activate(spare);
+  }
+
+  private activate(index: number): void {
     const left = this.hands[this.active];
     if (left) { left.latched = left.grip > 0.05; left.closing = false; }
-    this.active = (this.active + 1) % Math.max(1, this.hands.length);
+    this.active = index;
   }
 
   move(index: number, dx: number, dy: number, dz: number): void {

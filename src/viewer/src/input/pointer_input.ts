@@ -133,6 +133,11 @@ export class PointerInput {
         hands.switchHand();
         this.onswitch();
         break;
+      case "KeyX":
+        if (!first) break;
+        hands.switchSpare();
+        this.onswitch();
+        break;
       default:
         if (!(event.code in kMovements)) return;
         if (down) this.pressed.add(event.code);

@@ -28,6 +28,7 @@ export const kShortcuts: ShortcutGroup[] = [
   {
     title: "Hands (field in focus, pointer input)", shortcuts: [
       { keys: "Tab", does: "change the active hand; the other keeps pose and grip" },
+      { keys: "X", does: "take up the scissors, or put them down" },
       { keys: "Mouse", does: "move the active hand in the focal plane; wheel: depth" },
       { keys: "Shift + drag", does: "tilt the handle;  right drag: roll" },
       { keys: "Space or left button", does: "close the grip while held; with the wheel: fine squeeze" },

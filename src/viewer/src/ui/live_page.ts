@@ -137,7 +137,8 @@ export class LivePage implements Page {
     const { frame } = this.app;
     if (!frame) return;
     if (this.steering && !this.pointer.hands.ready && this.app.scene) {
-      this.pointer.hands.adopt(frame.tools, this.app.scene.tools.map((tool) => tool.max_angle));
+      this.pointer.hands.adopt(frame.tools, this.app.scene.tools.map((tool) => tool.max_angle),
+        this.app.scene.tools.map((tool) => tool.kind === "scissors"));
       this.showHand();
     }
     const now = performance.now();
@@ -157,7 +158,7 @@ export class LivePage implements Page {
       if (!session.in_control) text = session.controller > 0 ? "Watching: another browser is in control" : "Watching";
       else if (session.input === "demo") text = "Demonstration";
       else if (session.input === "device") text = "Attached instruments";
-      else if (scene) text = `Active hand: ${toolTitle(scene.tools[this.pointer.hands.active]?.name ?? "")} (Tab changes)`;
+      else if (scene) text = `Active hand: ${toolTitle(scene.tools[this.pointer.hands.active]?.name ?? "")} (Tab changes${scene.tools.some((tool) => tool.kind === "scissors") ? ", X: scissors" : ""})`;
     }
     setText(this.hand, text);
   }
