@@ -1,6 +1,7 @@
 #pragma once
-// Orientation tests that are exact for points on an integer grid: a floating-point filter decides almost always, 128-bit
-// integers decide the rest. Coordinates are whole numbers stored as doubles, at most 2^27 in magnitude.
+// Orientation tests that are exact for points on an integer grid: a floating-point filter decides almost
+// always, 128-bit integers decide the rest. Coordinates are whole numbers stored as doubles, at most 2^27 in
+// magnitude.
 
 #include <cmath>
 #include <cstdint>
@@ -17,7 +18,8 @@ inline int sign_det(const Vec3& u, const Vec3& v, const Vec3& w) {
   const double c = v.z() * w.x(), d = v.x() * w.z();
   const double e = v.x() * w.y(), f = v.y() * w.x();
   const double det = u.x() * (a - b) + u.y() * (c - d) + u.z() * (e - f);
-  const double size = std::abs(u.x()) * (std::abs(a) + std::abs(b)) + std::abs(u.y()) * (std::abs(c) + std::abs(d)) +
+  const double size = std::abs(u.x()) * (std::abs(a) + std::abs(b)) +
+                      std::abs(u.y()) * (std::abs(c) + std::abs(d)) +
                       std::abs(u.z()) * (std::abs(e) + std::abs(f));
   if (std::abs(det) > 2e-15 * size) return det > 0.0 ? 1 : -1;
   const auto whole = [](double x) { return static_cast<Int128>(static_cast<std::int64_t>(x)); };

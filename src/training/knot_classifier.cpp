@@ -12,7 +12,8 @@
 namespace filum {
 namespace {
 
-KnotDiagram smallest_diagram(const Points& nodes, const Closure& closure, std::uint64_t seed, int directions) {
+KnotDiagram smallest_diagram(const Points& nodes, const Closure& closure, std::uint64_t seed,
+                             int directions) {
   GridPolygon polygon = to_grid(close_curve(nodes, closure), seed);
   shrink(polygon);
   return project_best(polygon, seed, directions);
@@ -37,13 +38,15 @@ Vote elect(const Points& nodes, const KnotOptions& options, int& n_votes) {
     if (diagram.crossings() < same->diagram.crossings()) same->diagram = diagram;
     ++same->count;
   }
-  return *std::max_element(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) { return a.count < b.count; });
+  return *std::max_element(votes.begin(), votes.end(),
+                           [](const Vote& a, const Vote& b) { return a.count < b.count; });
 }
 
 /// Throws in order if the shrunk diagram shows them as a nest that adds up to `members`; else empty.
 std::vector<int> stack_in_diagram(const KnotDiagram& diagram, const std::vector<int>& members) {
   std::vector<int> stack = stacked_throws(diagram);
-  return std::is_permutation(stack.begin(), stack.end(), members.begin(), members.end()) ? stack : std::vector<int>{};
+  return std::is_permutation(stack.begin(), stack.end(), members.begin(), members.end()) ? stack
+                                                                                         : std::vector<int>{};
 }
 
 /// Names a knot made of `members`, in the order `stack` (empty if not known).
@@ -73,7 +76,8 @@ void cross_check(const Vote& vote, KnotReport& report) {
 
 }  // namespace
 
-KnotReport classify_knot(const Points& nodes, double radius, const PostShape* post, const KnotOptions& options) {
+KnotReport classify_knot(const Points& nodes, double radius, const PostShape* post,
+                         const KnotOptions& options) {
   KnotReport report;
   if (nodes.cols() < 4 || !nodes.allFinite()) {
     report.note = "no usable thread";

@@ -34,7 +34,8 @@ std::vector<Vec3> free_directions(const Vec3& tip, const Points& others, int cou
   std::vector<Vec3> chosen;
   for (int k : order) {
     const Vec3 d = kSphere.col(k);
-    const bool apart = std::all_of(chosen.begin(), chosen.end(), [&](const Vec3& c) { return c.dot(d) < kApart; });
+    const bool apart =
+        std::all_of(chosen.begin(), chosen.end(), [&](const Vec3& c) { return c.dot(d) < kApart; });
     if (apart) chosen.push_back(d);
     if (static_cast<int>(chosen.size()) == count) break;
   }

@@ -20,7 +20,8 @@ struct Hit {
 enum class Meeting { none, crossing, degenerate };
 
 /// Do the edges p0p1 and q0q1 cross in the picture? Fills the sign and which one is on top.
-Meeting meet(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, const Vec3& d, int& sign, bool& p_over) {
+Meeting meet(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, const Vec3& d, int& sign,
+             bool& p_over) {
   const Vec3 u = p1 - p0, v = q1 - q0, w = q0 - p0;
   const int q0_side = sign_det(u, w, d), q1_side = sign_det(u, q1 - p0, d);
   if (q0_side * q1_side > 0) return Meeting::none;
@@ -39,9 +40,12 @@ double crossing_parameter(const Vec3& p0, const Vec3& p1, const Vec3& q0, const 
   return normal.dot(q0 - p0) / normal.dot(p1 - p0);
 }
 
-bool adjacent(std::size_t i, std::size_t j, std::size_t n) { return j == i + 1 || (i == 0 && j == n - 1); }
+bool adjacent(std::size_t i, std::size_t j, std::size_t n) {
+  return j == i + 1 || (i == 0 && j == n - 1);
+}
 
-/// Sorts the hits along the curve; false when two of them on an edge are too close to be ordered with certainty.
+/// Sorts the hits along the curve; false when two of them on an edge are too close to be ordered with
+/// certainty.
 bool order_along_curve(std::vector<Hit>& hits) {
   std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
     return a.edge != b.edge ? a.edge < b.edge : a.parameter < b.parameter;
@@ -54,7 +58,9 @@ bool order_along_curve(std::vector<Hit>& hits) {
 
 }  // namespace
 
-int KnotDiagram::writhe() const { return std::accumulate(sign.begin(), sign.end(), 0); }
+int KnotDiagram::writhe() const {
+  return std::accumulate(sign.begin(), sign.end(), 0);
+}
 
 std::optional<KnotDiagram> project(const GridPolygon& polygon, const Vec3& direction) {
   const std::size_t n = polygon.size();
@@ -90,7 +96,8 @@ KnotDiagram project_best(const GridPolygon& polygon, std::uint64_t seed, int tri
   const auto component = [&random] { return static_cast<double>(random.below(8191)) - 4095.0; };
   KnotDiagram best;
   bool found = false;
-  // A degenerate direction is improbable (the grid points are jittered), so ten times the tries is never used up.
+  // A degenerate direction is improbable (the grid points are jittered), so ten times the tries is never used
+  // up.
   for (int attempt = 0, good = 0; good < tries && attempt < 10 * tries + 100; ++attempt) {
     Vec3 d;
     do {

@@ -1,7 +1,8 @@
 #pragma once
-// A closed polygon seen along a direction, as a signed Gauss code: the crossings in the order in which the curve meets
-// them, over or under, each with its sign (right-handed = +1). Crossings are decided by exact predicates; a direction in
-// which the picture is not in general position is refused and another, seeded one is taken.
+// A closed polygon seen along a direction, as a signed Gauss code: the crossings in the order in which the
+// curve meets them, over or under, each with its sign (right-handed = +1). Crossings are decided by exact
+// predicates; a direction in which the picture is not in general position is refused and another, seeded one
+// is taken.
 
 #include <cstdint>
 #include <optional>
@@ -26,7 +27,8 @@ struct KnotDiagram {
   int writhe() const;
 };
 
-/// The diagram seen from infinity along +direction (whole components of at most 2^12); nothing if not in general position.
+/// The diagram seen from infinity along +direction (whole components of at most 2^12); nothing if not in
+/// general position.
 std::optional<KnotDiagram> project(const GridPolygon& polygon, const Vec3& direction);
 
 /// The diagram with the fewest crossings after reduction (knot_simplify.h) over `tries` seeded directions.

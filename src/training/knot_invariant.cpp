@@ -116,8 +116,12 @@ std::int64_t power_mod(std::int64_t base, std::int64_t exponent) {
   return result;
 }
 
-std::int64_t inverse_mod(std::int64_t a) { return power_mod(a, kPrime - 2); }
-std::int64_t reduce_mod(std::int64_t a) { return ((a % kPrime) + kPrime) % kPrime; }
+std::int64_t inverse_mod(std::int64_t a) {
+  return power_mod(a, kPrime - 2);
+}
+std::int64_t reduce_mod(std::int64_t a) {
+  return ((a % kPrime) + kPrime) % kPrime;
+}
 
 using Matrix = std::vector<std::vector<std::int64_t>>;
 

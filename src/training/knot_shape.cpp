@@ -32,7 +32,8 @@ std::vector<double> strand_gaps(const Points& nodes, int begin, int end, double 
     for (std::size_t j = i + 1; j < n; ++j) {
       if (arc[j] - arc[i] < skip) continue;
       const double d =
-          (nodes.col(begin + static_cast<Eigen::Index>(i)) - nodes.col(begin + static_cast<Eigen::Index>(j))).norm();
+          (nodes.col(begin + static_cast<Eigen::Index>(i)) - nodes.col(begin + static_cast<Eigen::Index>(j)))
+              .norm();
       gap[i] = std::min(gap[i], d);
       gap[j] = std::min(gap[j], d);
     }
@@ -40,7 +41,8 @@ std::vector<double> strand_gaps(const Points& nodes, int begin, int end, double 
   return gap;
 }
 
-/// The longest run of the core that no other strand is near: the loop. Empty (first > second) if there is none.
+/// The longest run of the core that no other strand is near: the loop. Empty (first > second) if there is
+/// none.
 Run longest_free_run(const std::vector<double>& gap, double near) {
   Run best{0, -1};
   for (std::size_t i = 0; i < gap.size();) {
@@ -51,7 +53,8 @@ Run longest_free_run(const std::vector<double>& gap, double near) {
     std::size_t j = i;
     while (j + 1 < gap.size() && gap[j + 1] > near) ++j;
     const bool inside = i > 0 && j + 1 < gap.size();
-    if (inside && static_cast<int>(j - i) > best.second - best.first) best = {static_cast<int>(i), static_cast<int>(j)};
+    if (inside && static_cast<int>(j - i) > best.second - best.first)
+      best = {static_cast<int>(i), static_cast<int>(j)};
     i = j + 1;
   }
   return best;
@@ -98,8 +101,9 @@ int one_more(const std::vector<int>& more, const std::vector<int>& less) {
   return difference.size() == 1 && more.size() == less.size() + 1 ? difference.front() : 0;
 }
 
-/// From the post outwards: which throw went each time one went, each state seen `looks` times running; empty if some
-/// state was not. The first state that fits counts: a double throw that is half undone looks like a single one later on.
+/// From the post outwards: which throw went each time one went, each state seen `looks` times running; empty
+/// if some state was not. The first state that fits counts: a double throw that is half undone looks like a
+/// single one later on.
 std::vector<int> order_undone(std::vector<int> members, const Undoing& left, std::size_t looks) {
   std::vector<int> outside_in;
   for (std::size_t k = 0; members.size() > 1 && k + looks <= left.size(); ++k) {
@@ -117,7 +121,8 @@ std::vector<int> order_undone(std::vector<int> members, const Undoing& left, std
 
 }  // namespace
 
-std::vector<int> unravel(const Points& nodes, std::vector<int> members, std::uint64_t seed, const KnotReport& report) {
+std::vector<int> unravel(const Points& nodes, std::vector<int> members, std::uint64_t seed,
+                         const KnotReport& report) {
   std::sort(members.begin(), members.end());
   const Undoing first = draw_back(nodes, report.core_begin, report.core_end, true, seed);
   const std::vector<int> order = order_undone(members, first, 2);
@@ -136,7 +141,8 @@ void find_core(const Points& nodes, const Laurent& jones, std::uint64_t seed, Kn
   int begin = 0, end = static_cast<int>(nodes.cols()) - 1;
   report.core_begin = begin;
   report.core_end = end;
-  // Where the freest closure gives another knot than the vote did, the whole thread is the best that can be said.
+  // Where the freest closure gives another knot than the vote did, the whole thread is the best that can be
+  // said.
   if (!same_knot(nodes, begin, end, jones, seed)) return;
   for (int low = begin, high = end; high - low > 1;) {
     const int middle = (low + high) / 2;

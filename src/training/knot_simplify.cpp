@@ -33,7 +33,8 @@ struct Box {
   }
 };
 
-/// May corner i go? The two edges at its neighbours touch the triangle at a corner only, unless coplanar with it.
+/// May corner i go? The two edges at its neighbours touch the triangle at a corner only, unless coplanar with
+/// it.
 bool removable(const GridPolygon& polygon, std::size_t i) {
   const std::size_t n = polygon.size();
   const std::size_t before = (i + n - 1) % n, after = (i + 1) % n;
@@ -52,7 +53,6 @@ bool removable(const GridPolygon& polygon, std::size_t i) {
   }
   return true;
 }
-
 
 /// Drops two crossings (or one, twice named) from code and signs.
 void drop(KnotDiagram& diagram, int first, int second) {
@@ -119,7 +119,8 @@ GridPolygon to_grid(const Points& closed_curve, std::uint64_t seed) {
   polygon.reserve(static_cast<std::size_t>(closed_curve.cols()));
   for (Eigen::Index k = 0; k < closed_curve.cols(); ++k) {
     Vec3 p = steps * (closed_curve.col(k) - centre);
-    for (int axis = 0; axis < 3; ++axis) p[axis] = std::round(p[axis]) + static_cast<double>(random.below(9)) - 4.0;
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] = std::round(p[axis]) + static_cast<double>(random.below(9)) - 4.0;
     polygon.push_back(p);
   }
   return polygon;

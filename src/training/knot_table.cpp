@@ -42,7 +42,8 @@ std::set<int> crossings_in(const KnotDiagram& diagram, std::size_t begin, std::s
   return found;
 }
 
-/// Half-twists of the throw made of these crossings; 0 if their signs differ or their number is not that of a throw.
+/// Half-twists of the throw made of these crossings; 0 if their signs differ or their number is not that of a
+/// throw.
 int throw_of(const KnotDiagram& diagram, const std::set<int>& crossings) {
   const int count = static_cast<int>(crossings.size());
   int sum = 0;
@@ -50,7 +51,9 @@ int throw_of(const KnotDiagram& diagram, const std::set<int>& crossings) {
   return std::abs(sum) == count && count % 2 == 1 && count >= 3 ? sum : 0;
 }
 
-bool opposite(int a, int b) { return (a > 0) != (b > 0); }
+bool opposite(int a, int b) {
+  return (a > 0) != (b > 0);
+}
 
 bool alternating(const std::vector<int>& throws) {
   for (std::size_t k = 1; k < throws.size(); ++k) {

@@ -1,5 +1,6 @@
 #pragma once
-// The knots that stacks of up to four throws can make, by Jones polynomial, and reading a stack from a diagram.
+// The knots that stacks of up to four throws can make, by Jones polynomial, and reading a stack from a
+// diagram.
 
 #include <string>
 #include <vector>
@@ -9,17 +10,19 @@
 
 namespace filum {
 
-/// Half-twists of the throws whose connected sum has this polynomial, largest first; empty for the unknot or if none has.
-/// Throws of 3, 5 and 7 half-twists of either hand are known, up to four of them.
+/// Half-twists of the throws whose connected sum has this polynomial, largest first; empty for the unknot or
+/// if none has. Throws of 3, 5 and 7 half-twists of either hand are known, up to four of them.
 std::vector<int> throws_of(const Laurent& jones);
 
-/// The throws from the post outwards if the diagram, met from one tail's end to the other's, is a nest of them; else empty.
+/// The throws from the post outwards if the diagram, met from one tail's end to the other's, is a nest of
+/// them; else empty.
 std::vector<int> stacked_throws(const KnotDiagram& diagram);
 
 /// "1=1", "2x1": Tera-Aberg notation of throws in order from the post.
 std::string composition_of(const std::vector<int>& throws);
 
-/// Class of a stack of throws. `ordered` says whether their order is known; otherwise the order most in use is assumed.
+/// Class of a stack of throws. `ordered` says whether their order is known; otherwise the order most in use
+/// is assumed.
 std::string class_of(const std::vector<int>& throws, bool ordered);
 
 }  // namespace filum

@@ -35,7 +35,8 @@ std::int64_t Laurent::at(int power) const {
 std::int64_t Laurent::at_minus_one() const {
   std::int64_t sum = 0;
   if (zero()) return 0;
-  for (int power = low_; power <= high(); ++power) sum = wrap_add(sum, power % 2 == 0 ? at(power) : -at(power));
+  for (int power = low_; power <= high(); ++power)
+    sum = wrap_add(sum, power % 2 == 0 ? at(power) : -at(power));
   return sum;
 }
 
@@ -71,7 +72,8 @@ Laurent Laurent::shifted(int powers) const {
 }
 
 Laurent Laurent::mirrored() const {
-  return Laurent(zero() ? 0 : -high(), std::vector<std::int64_t>(coefficients_.rbegin(), coefficients_.rend()));
+  return Laurent(zero() ? 0 : -high(),
+                 std::vector<std::int64_t>(coefficients_.rbegin(), coefficients_.rend()));
 }
 
 Laurent Laurent::divided(const Laurent& by) const {

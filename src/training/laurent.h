@@ -1,6 +1,7 @@
 #pragma once
-// Laurent polynomials in one variable with whole coefficients, just enough for knot polynomials. Arithmetic wraps modulo
-// 2^64: sums that cancel later may overflow on the way, the final coefficients (bounded by the knot's determinant) do not.
+// Laurent polynomials in one variable with whole coefficients, just enough for knot polynomials. Arithmetic
+// wraps modulo 2^64: sums that cancel later may overflow on the way, the final coefficients (bounded by the
+// knot's determinant) do not.
 
 #include <cstdint>
 #include <string>
@@ -24,8 +25,8 @@ class Laurent {
 
   Laurent& operator+=(const Laurent& other);
   Laurent operator*(const Laurent& other) const;
-  Laurent shifted(int powers) const;        // times x^powers
-  Laurent mirrored() const;                 // x -> 1/x
+  Laurent shifted(int powers) const;         // times x^powers
+  Laurent mirrored() const;                  // x -> 1/x
   Laurent divided(const Laurent& by) const;  // exact division; lowest coefficient of `by` is +1 or -1
   bool operator==(const Laurent& other) const = default;
 

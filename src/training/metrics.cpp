@@ -21,7 +21,8 @@ std::vector<double> amplitude_spectrum(const std::vector<double>& signal, int pa
   Eigen::FFT<double> fft;
   fft.fwd(spectrum, padded);
   std::vector<double> amplitude(spectrum.size());
-  std::transform(spectrum.begin(), spectrum.end(), amplitude.begin(), [](const auto& c) { return std::abs(c); });
+  std::transform(spectrum.begin(), spectrum.end(), amplitude.begin(),
+                 [](const auto& c) { return std::abs(c); });
   return amplitude;
 }
 
@@ -87,7 +88,8 @@ double sparc(const std::vector<double>& speed, double fs, const SparcOptions& op
   const double largest = *std::max_element(amplitude.begin(), amplitude.end());
   if (!(largest > 0.0)) return kNaN;
   const double df = fs / static_cast<double>(amplitude.size());
-  const auto count = std::min(amplitude.size(), static_cast<std::size_t>(std::floor(options.fc / df * (1 + 1e-12))) + 1);
+  const auto count =
+      std::min(amplitude.size(), static_cast<std::size_t>(std::floor(options.fc / df * (1 + 1e-12))) + 1);
   std::size_t first = count, last = 0;
   for (std::size_t k = 0; k < count; ++k) {
     if (amplitude[k] < options.amplitude * largest) continue;
@@ -179,7 +181,8 @@ double idle_time(const std::vector<double>& speed, double fs, const MovementOpti
 }
 
 Spread spread_of(std::vector<double> values) {
-  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }), values.end());
+  values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+               values.end());
   if (values.empty()) return {kNaN, kNaN, kNaN, 0};
   std::sort(values.begin(), values.end());
   const auto quantile = [&](double q) {
@@ -202,7 +205,8 @@ Smoothness smoothness_of(const std::vector<double>& speed, double fs, const std:
                                  x.begin() + static_cast<std::ptrdiff_t>(s.end));
     };
     sparcs.push_back(sparc(cut(speed), fs));
-    if (signal_to_noise(cut(speed), cut(smooth)) >= kLdljSignalToNoise) ldljs.push_back(ldlj(cut(smooth), fs));
+    if (signal_to_noise(cut(speed), cut(smooth)) >= kLdljSignalToNoise)
+      ldljs.push_back(ldlj(cut(smooth), fs));
   }
   return {spread_of(std::move(sparcs)), spread_of(std::move(ldljs))};
 }

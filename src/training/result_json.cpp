@@ -8,7 +8,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
 Json finite(const std::vector<double>& values) {
   Json list = Json::array();
@@ -93,13 +95,21 @@ Json events_json(const std::vector<TaskEvent>& events) {
 }  // namespace
 
 std::string result_json(const Result& r, bool full) {
-  Json json = {{"task", r.task},         {"title", r.title},     {"finished", r.finished},
-               {"passed", r.passed},     {"seconds", finite(r.seconds)}, {"score", score_json(r)},
-               {"knot", knot_json(r)},   {"events", events_json(r.events)}};
+  Json json = {{"task", r.task},
+               {"title", r.title},
+               {"finished", r.finished},
+               {"passed", r.passed},
+               {"seconds", finite(r.seconds)},
+               {"score", score_json(r)},
+               {"knot", knot_json(r)},
+               {"events", events_json(r.events)}};
   json["series"] = Json::array();
   for (const Curve& c : r.series) {
-    json["series"].push_back(
-        {{"name", c.name}, {"title", c.title}, {"unit", c.unit}, {"time", finite(c.time)}, {"value", finite(c.value)}});
+    json["series"].push_back({{"name", c.name},
+                              {"title", c.title},
+                              {"unit", c.unit},
+                              {"time", finite(c.time)},
+                              {"value", finite(c.value)}});
   }
   json["paths"] = Json::array();
   for (const ToolPath& p : r.paths) {

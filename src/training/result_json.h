@@ -7,8 +7,8 @@
 
 namespace filum {
 
-/// Keys "task", "title", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths"; `full` adds
-/// "verdict", "measures" and "knot_report". Numbers that are not finite become null. One line.
+/// Keys "task", "title", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths";
+/// `full` adds "verdict", "measures" and "knot_report". Numbers that are not finite become null. One line.
 std::string result_json(const Result& result, bool full = true);
 
 }  // namespace filum

@@ -43,20 +43,33 @@ double value_of(Measure measure, const Result& r) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const Measures& m = r.measures;
   switch (measure) {
-    case Measure::time: return m.seconds;
-    case Measure::throws: return m.throws;
-    case Measure::security: return r.security ? r.security->slip_force : kNaN;
-    case Measure::path_length: return m.path_length;
-    case Measure::movements: return m.movements;
-    case Measure::idle_time: return m.idle_time;
-    case Measure::sparc: return m.sparc;
-    case Measure::ldlj: return m.ldlj;
-    case Measure::grip_peak: return m.grip_peak;
-    case Measure::drops: return m.drops;
-    case Measure::thread_overload: return m.overload;
-    case Measure::both_moving: return m.both_moving;
+    case Measure::time:
+      return m.seconds;
+    case Measure::throws:
+      return m.throws;
+    case Measure::security:
+      return r.security ? r.security->slip_force : kNaN;
+    case Measure::path_length:
+      return m.path_length;
+    case Measure::movements:
+      return m.movements;
+    case Measure::idle_time:
+      return m.idle_time;
+    case Measure::sparc:
+      return m.sparc;
+    case Measure::ldlj:
+      return m.ldlj;
+    case Measure::grip_peak:
+      return m.grip_peak;
+    case Measure::drops:
+      return m.drops;
+    case Measure::thread_overload:
+      return m.overload;
+    case Measure::both_moving:
+      return m.both_moving;
     case Measure::knot_class:
-    case Measure::tail_lengths: return kNaN;
+    case Measure::tail_lengths:
+      return kNaN;
   }
   return kNaN;
 }
@@ -66,23 +79,33 @@ std::string remark(Measure measure, const Result& r) {
   const Measures& m = r.measures;
   switch (measure) {
     case Measure::security:
-      return r.security && r.security->held ? "held at the strongest pull; " : "slipped or broke at this pull; ";
-    case Measure::sparc: return "median of " + std::to_string(m.sparc_segments) + " movements; ";
-    case Measure::ldlj: return "median of " + std::to_string(m.ldlj_segments) + " movements; ";
+      return r.security && r.security->held ? "held at the strongest pull; "
+                                            : "slipped or broke at this pull; ";
+    case Measure::sparc:
+      return "median of " + std::to_string(m.sparc_segments) + " movements; ";
+    case Measure::ldlj:
+      return "median of " + std::to_string(m.ldlj_segments) + " movements; ";
     case Measure::grip_peak:
       return "largest of " + std::to_string(m.grasps) + " grasps, median " + shown(m.grip_median, "N") + "; ";
-    case Measure::thread_overload: return "largest tension " + shown(m.tension_peak, "mN") + "; ";
-    default: return {};
+    case Measure::thread_overload:
+      return "largest tension " + shown(m.tension_peak, "mN") + "; ";
+    default:
+      return {};
   }
 }
 
 const char* why_not_measured(Measure measure) {
   switch (measure) {
-    case Measure::security: return "the knot was not pulled";
-    case Measure::sparc: return "no movement between 0.3 s and 10 s long";
-    case Measure::ldlj: return "no movement between 0.3 s and 10 s long that is clear of noise";
-    case Measure::tail_lengths: return "the tails were not both cut, or there is no knot";
-    default: return "nothing to measure";
+    case Measure::security:
+      return "the knot was not pulled";
+    case Measure::sparc:
+      return "no movement between 0.3 s and 10 s long";
+    case Measure::ldlj:
+      return "no movement between 0.3 s and 10 s long that is clear of noise";
+    case Measure::tail_lengths:
+      return "the tails were not both cut, or there is no knot";
+    default:
+      return "nothing to measure";
   }
 }
 
@@ -117,8 +140,8 @@ void score_tails(const RubricItem& rule, const Result& r, ScoreItem& item) {
   const double share_short = rule.band.share(shorter), share_long = rule.band.share(longer);
   item.number = (share_short <= share_long ? shorter : longer) / unit_scale(rule.unit);
   item.points = item.max_points * std::min(share_short, share_long);
-  item.why = "tails " + shown(shorter, rule.unit) + " and " + shown(longer, rule.unit) + ", the worse one counts; " +
-             band_text(rule);
+  item.why = "tails " + shown(shorter, rule.unit) + " and " + shown(longer, rule.unit) +
+             ", the worse one counts; " + band_text(rule);
 }
 
 /// Little effort earns nothing unless the task was carried through.
@@ -131,8 +154,10 @@ bool needs_finish(Measure measure) {
     case Measure::grip_peak:
     case Measure::drops:
     case Measure::thread_overload:
-    case Measure::both_moving: return true;
-    default: return false;
+    case Measure::both_moving:
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -164,7 +189,8 @@ void judge(const Task& task, bool broken, Result& r) {
   if (task.demonstration_only) fail("a demonstration does not pass");
   if (!r.finished) fail("not all steps were done");
   if (broken) fail("the thread broke");
-  if (!accepted(task, r.knot.knot_class)) fail("the knot is a " + r.knot.knot_class + ", not a " + joined(task.accept));
+  if (!accepted(task, r.knot.knot_class))
+    fail("the knot is a " + r.knot.knot_class + ", not a " + joined(task.accept));
   if (r.knot.knot_class != "unknot" && !r.knot.encloses_post) fail("the knot does not enclose the post");
   if (task.required_security > 0.0) {
     if (!r.security) {
@@ -182,11 +208,13 @@ void judge(const Task& task, bool broken, Result& r) {
 }
 
 /// Every k-th index so that at most kMaxCurvePoints are left.
-std::size_t stride_of(std::size_t n) { return std::max<std::size_t>(1, (n + kMaxCurvePoints - 1) / kMaxCurvePoints); }
+std::size_t stride_of(std::size_t n) {
+  return std::max<std::size_t>(1, (n + kMaxCurvePoints - 1) / kMaxCurvePoints);
+}
 
 /// Thinned curve; each point is the largest of the samples it stands for, so that peaks stay.
-Curve curve(const std::string& name, const std::string& title, const std::string& unit, const std::vector<double>& time,
-            const std::vector<double>& value) {
+Curve curve(const std::string& name, const std::string& title, const std::string& unit,
+            const std::vector<double>& time, const std::vector<double>& value) {
   Curve c{name, title, unit, {}, {}};
   const std::size_t stride = stride_of(time.size()), n = std::min(time.size(), value.size());
   for (std::size_t k = 0; k < n; k += stride) {
@@ -264,15 +292,16 @@ void score(const Task& task, bool broken, Result& result) {
 }
 
 void add_curves(const SeriesLog& log, const SceneDescription& scene, Result& result) {
-  result.series.push_back(curve("thread_tension", "Largest tension of the thread", "N", log.time(), log.tension()));
+  result.series.push_back(
+      curve("thread_tension", "Largest tension of the thread", "N", log.time(), log.tension()));
   for (int t = 0; t < log.n_tools(); ++t) {
     const std::string& name = scene.tools[static_cast<std::size_t>(t)].name;
     const ToolLog& tool = log.tool(t);
     result.series.push_back(curve("speed_" + name, "Speed of " + name, "m/s", log.time(),
                                   low_pass(speed_of(tool.path(), kMetricRate), kMetricRate, 6.0)));
     result.series.push_back(curve("grip_force_" + name, "Squeeze of " + name, "N", log.time(), tool.grip));
-    result.series.push_back(curve("thread_force_" + name, "Pull of the thread on " + name, "N", log.time(),
-                                  tool.thread_force));
+    result.series.push_back(
+        curve("thread_force_" + name, "Pull of the thread on " + name, "N", log.time(), tool.thread_force));
     ToolPath path{t, name, {}, {}};
     for (std::size_t k = 0; k < log.size(); k += stride_of(log.size())) {
       path.time.push_back(log.time()[k]);

@@ -10,8 +10,8 @@ namespace filum {
 /// Movement, grip and thread measures of a run. `strength` [N] is the thread's.
 Measures measure(const SeriesLog& log, const std::vector<TaskEvent>& events, double strength);
 
-/// Fills items, total, verdict and passed of `result`, whose knot, security, measures, finished and seconds are known.
-/// `broken`: the thread has parted.
+/// Fills items, total, verdict and passed of `result`, whose knot, security, measures, finished and seconds
+/// are known. `broken`: the thread has parted.
 void score(const Task& task, bool broken, Result& result);
 
 /// Curves and paths for the plots, thinned to kMaxCurvePoints.

@@ -14,7 +14,8 @@ Points ToolLog::path() const {
 }
 
 SeriesLog::SeriesLog(int n_tools, double longest)
-    : n_tools_(std::clamp(n_tools, 0, 3)), capacity_(static_cast<std::size_t>(std::ceil(longest * kMetricRate)) + 1) {
+    : n_tools_(std::clamp(n_tools, 0, 3)),
+      capacity_(static_cast<std::size_t>(std::ceil(longest * kMetricRate)) + 1) {
   time_.reserve(capacity_);
   tension_.reserve(capacity_);
   for (int t = 0; t < n_tools_; ++t) {

@@ -1,5 +1,6 @@
 #pragma once
-// What a task run is scored and plotted from, sampled at kMetricRate of scored time into memory reserved beforehand.
+// What a task run is scored and plotted from, sampled at kMetricRate of scored time into memory reserved
+// beforehand.
 
 #include <array>
 #include <vector>
@@ -20,7 +21,8 @@ class SeriesLog {
  public:
   SeriesLog(int n_tools, double longest);  // longest [s] of scored time that is kept
 
-  /// Adds one sample; `tension` [N] is the thread's largest since the last one. False once the memory is full.
+  /// Adds one sample; `tension` [N] is the thread's largest since the last one. False once the memory is
+  /// full.
   bool add(const Observation& o, double tension);
 
   std::size_t size() const { return time_.size(); }

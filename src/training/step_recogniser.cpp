@@ -31,11 +31,16 @@ double largest_tension(const Observation& o) {
 
 const char* event_name(StepKind kind) {
   switch (kind) {
-    case StepKind::loop: return "loop-formed";
-    case StepKind::pass: return "end-passed";
-    case StepKind::lay: return "throw-laid";
-    case StepKind::tighten: return "throw-tightened";
-    case StepKind::cut: return "tails-cut";
+    case StepKind::loop:
+      return "loop-formed";
+    case StepKind::pass:
+      return "end-passed";
+    case StepKind::lay:
+      return "throw-laid";
+    case StepKind::tighten:
+      return "throw-tightened";
+    case StepKind::cut:
+      return "tails-cut";
   }
   return "";
 }
@@ -59,7 +64,8 @@ double wrap_turns(const Observation& o, const ToolObservation& tool) {
   return most / kTurn;
 }
 
-StepRecogniser::StepRecogniser(const Task& task, const SceneDescription& scene) : task_(task), scene_(scene) {}
+StepRecogniser::StepRecogniser(const Task& task, const SceneDescription& scene)
+    : task_(task), scene_(scene) {}
 
 bool StepRecogniser::due(double& last, double interval, double time) const {
   if (last >= 0.0 && time - last < interval && time >= last) return false;
@@ -116,12 +122,17 @@ bool StepRecogniser::fulfilled(const TaskStep& step, const Observation& o) const
   const Recognition& r = task_.recognition;
   const bool has_throw = n_throws_ >= step.throw_number;
   switch (step.kind) {
-    case StepKind::loop: return std::abs(wrap_) >= r.loop_turns || has_throw;
-    case StepKind::pass: return has_throw;
-    case StepKind::lay: return has_throw && looks_at_this_many_ >= kLooksToLay && std::abs(wrap_) < 0.5;
+    case StepKind::loop:
+      return std::abs(wrap_) >= r.loop_turns || has_throw;
+    case StepKind::pass:
+      return has_throw;
+    case StepKind::lay:
+      return has_throw && looks_at_this_many_ >= kLooksToLay && std::abs(wrap_) < 0.5;
     case StepKind::tighten:
-      return has_throw && peak_tension_ >= r.tight_tension && knot_turns_ > 0.0 && knot_turns_ <= r.tight_turns;
-    case StepKind::cut: return o.cut_edge_low >= 0 && o.cut_edge_high >= 0;
+      return has_throw && peak_tension_ >= r.tight_tension && knot_turns_ > 0.0 &&
+             knot_turns_ <= r.tight_turns;
+    case StepKind::cut:
+      return o.cut_edge_low >= 0 && o.cut_edge_high >= 0;
   }
   return false;
 }
@@ -144,7 +155,8 @@ void StepRecogniser::announce(const TaskStep& step, const Observation& o, std::v
 void StepRecogniser::step_back(const Observation& o, std::vector<TaskEvent>& events) {
   if (n_throws_ >= laid_ || looks_at_this_many_ < kLooksToUndo) return;
   laid_ = n_throws_;
-  events.push_back({o.time, "throw-undone", -1, static_cast<double>(n_throws_), "-", "a throw has come undone"});
+  events.push_back(
+      {o.time, "throw-undone", -1, static_cast<double>(n_throws_), "-", "a throw has come undone"});
   const auto again = std::find_if(task_.steps.begin(), task_.steps.end(),
                                   [&](const TaskStep& s) { return s.throw_number == n_throws_ + 1; });
   if (again != task_.steps.end()) step_ = static_cast<int>(again - task_.steps.begin());

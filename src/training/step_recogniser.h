@@ -3,7 +3,7 @@
 //   loop     the thread winds round an instrument's axis by more than Recognition::loop_turns
 //   pass     the end has been drawn through the loop: the thread's knot has one throw more (knot_classifier)
 //   lay      that throw is there in three looks running, and the thread is off the instruments
-//   tighten  the thread has since seen the tension peak asked for, and the knotted part has shrunk onto the post
+//   tighten  the thread has since seen the tension peak asked for, and the knotted part sits on the post
 //   cut      both tails are cut
 // The knot is looked at five times a second of scene time at most, and only if the thread has moved.
 
@@ -18,13 +18,13 @@ namespace filum {
 
 /// Something that happened, for the result and the plots.
 struct TaskEvent {
-  double time = 0.0;        // [s], scene time
-  const char* name = "";    // static storage: "loop-formed", "end-passed", "throw-laid", "throw-tightened", "tail-cut",
-                            // "throw-undone", "knot-changed", or an event of the world
+  double time = 0.0;      // [s], scene time
+  const char* name = "";  // static storage: "loop-formed", "end-passed", "throw-laid", "throw-tightened",
+                          // "tail-cut", "throw-undone", "knot-changed", or an event of the world
   int tool = -1;
-  double value = 0.0;       // in `unit`
+  double value = 0.0;  // in `unit`
   const char* unit = "-";
-  std::string text;         // for people, may be empty
+  std::string text;  // for people, may be empty
 };
 
 class StepRecogniser {
@@ -36,10 +36,10 @@ class StepRecogniser {
 
   int step() const { return step_; }  // index of the present step; number of steps when done
   bool done() const { return step_ == static_cast<int>(task_.steps.size()); }
-  int n_throws() const { return n_throws_; }                  // in the thread now, as last seen
-  const std::string& knot_class() const { return class_; }    // as last seen
-  double wrap() const { return wrap_; }                       // turns of the thread about an instrument, the largest
-  int wrapped_tool() const { return wrapped_tool_; }          // that instrument, -1 none
+  int n_throws() const { return n_throws_; }                // in the thread now, as last seen
+  const std::string& knot_class() const { return class_; }  // as last seen
+  double wrap() const { return wrap_; }               // turns of the thread about an instrument, the largest
+  int wrapped_tool() const { return wrapped_tool_; }  // that instrument, -1 none
 
  private:
   bool due(double& last, double interval, double time) const;
@@ -55,14 +55,14 @@ class StepRecogniser {
   int step_ = 0;
   int n_throws_ = 0;
   std::string class_ = "unknot";
-  int looks_at_this_many_ = 0;      // looks running with n_throws_
-  int laid_ = 0;                    // throws laid so far
+  int looks_at_this_many_ = 0;  // looks running with n_throws_
+  int laid_ = 0;                // throws laid so far
   double wrap_ = 0.0;
   int wrapped_tool_ = -1;
-  double peak_tension_ = 0.0;       // [N], since the present throw was laid
-  double knot_turns_ = 0.0;         // length of the knotted part in circumferences of the post
+  double peak_tension_ = 0.0;  // [N], since the present throw was laid
+  double knot_turns_ = 0.0;    // length of the knotted part in circumferences of the post
   double last_wrap_ = -1.0, last_knot_ = -1.0, last_tight_ = -1.0;  // [s], time of the last look
-  Points seen_;                     // nodes at the last look at the knot
+  Points seen_;                                                     // nodes at the last look at the knot
 };
 
 /// Turns (signed) of the thread about the axis of a tool, the most of any stretch near the tool.

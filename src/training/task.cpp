@@ -35,7 +35,8 @@ constexpr std::array kMeasures = {
 };
 
 const MeasureName& entry_of(Measure measure) {
-  return *std::find_if(kMeasures.begin(), kMeasures.end(), [&](const MeasureName& m) { return m.measure == measure; });
+  return *std::find_if(kMeasures.begin(), kMeasures.end(),
+                       [&](const MeasureName& m) { return m.measure == measure; });
 }
 
 const std::vector<std::string> kClasses = {"square",   "granny",       "surgeons", "triple",
@@ -62,7 +63,9 @@ Measure parse_measure(const YamlNode& node) {
   std::vector<std::string> names;
   for (const MeasureName& m : kMeasures) names.push_back(m.name);
   const std::string word = node.choice("measure", names);
-  return std::find_if(kMeasures.begin(), kMeasures.end(), [&](const MeasureName& m) { return word == m.name; })->measure;
+  return std::find_if(kMeasures.begin(), kMeasures.end(),
+                      [&](const MeasureName& m) { return word == m.name; })
+      ->measure;
 }
 
 Band parse_band(const YamlNode& node, const std::string& unit) {
@@ -119,7 +122,8 @@ std::vector<std::string> parse_accept(const YamlNode& file) {
   const std::vector<std::string> classes = file.texts("accept");
   for (const std::string& word : classes) {
     if (std::find(kClasses.begin(), kClasses.end(), word) == kClasses.end()) {
-      file.refuse("accept", "a list of knot classes: square, granny, surgeons, triple, overhand, half-hitches");
+      file.refuse("accept",
+                  "a list of knot classes: square, granny, surgeons, triple, overhand, half-hitches");
     }
   }
   if (classes.empty()) file.refuse("accept", "at least one knot class");
@@ -128,8 +132,12 @@ std::vector<std::string> parse_accept(const YamlNode& file) {
 
 }  // namespace
 
-const char* name_of(Measure measure) { return entry_of(measure).name; }
-const char* unit_of(Measure measure) { return entry_of(measure).unit; }
+const char* name_of(Measure measure) {
+  return entry_of(measure).name;
+}
+const char* unit_of(Measure measure) {
+  return entry_of(measure).unit;
+}
 
 double Band::share(double value) const {
   if (std::isnan(value)) return 0.0;
@@ -166,6 +174,8 @@ Task parse_task(const YamlNode& file) {
   return task;
 }
 
-Task load_task(const std::string& path) { return parse_task(YamlNode::load(path)); }
+Task load_task(const std::string& path) {
+  return parse_task(YamlNode::load(path));
+}
 
 }  // namespace filum

@@ -1,7 +1,7 @@
 #pragma once
-// A task as its file curricula/<task>/task.yaml defines it: steps with hints, what passes, and a rubric whose every line
-// carries its bands, points and the source of the numbers. Format filum-task/1; unknown keys are refused (InputError).
-// Marks made from it are the simulator's estimates, no validated clinical score.
+// A task as its file curricula/<task>/task.yaml defines it: steps with hints, what passes, and a rubric whose
+// every line carries its bands, points and the source of the numbers. Format filum-task/1; unknown keys are
+// refused (InputError). Marks made from it are the simulator's estimates, no validated clinical score.
 
 #include <string>
 #include <vector>
@@ -21,14 +21,26 @@ struct TaskStep {
 
 /// What a rubric line looks at; the SI unit of its value is unit_of(measure).
 enum class Measure {
-  time, throws, knot_class, security, tail_lengths, path_length, movements, idle_time, sparc, ldlj, grip_peak, drops,
-  thread_overload, both_moving,
+  time,
+  throws,
+  knot_class,
+  security,
+  tail_lengths,
+  path_length,
+  movements,
+  idle_time,
+  sparc,
+  ldlj,
+  grip_peak,
+  drops,
+  thread_overload,
+  both_moving,
 };
 const char* name_of(Measure measure);
 const char* unit_of(Measure measure);
 
-/// Share of the points by value: 0 up to zero_below, 1 between full_from and full_to, 0 from zero_above, straight lines
-/// between. SI units of the measure.
+/// Share of the points by value: 0 up to zero_below, 1 between full_from and full_to, 0 from zero_above,
+/// straight lines between. SI units of the measure.
 struct Band {
   double zero_below, full_from, full_to, zero_above;
   double share(double value) const;
@@ -37,29 +49,30 @@ struct Band {
 struct RubricItem {
   Measure measure = Measure::time;
   std::string title;
-  double points = 0.0;      // most that can be had
-  std::string unit;         // shown, e.g. "mm"
-  Band band{};              // not used by knot_class
-  std::string source;       // where the numbers come from
+  double points = 0.0;  // most that can be had
+  std::string unit;     // shown, e.g. "mm"
+  Band band{};          // not used by knot_class
+  std::string source;   // where the numbers come from
 };
 
 struct Recognition {
-  double loop_turns = 0.75;      // turns of the thread about an instrument that count as a loop
-  double tight_tension = 5e-3;   // [N], peak of the thread's tension that a tightened throw has seen
-  double tight_turns = 2.5;      // length of the knotted part in circumferences of the post, below which it is tight
-  double overload = 0.8;         // share of the thread's strength that counts as overload
-  double grip_limit = 2.0;       // [N], squeeze above which the trainee is warned
+  double loop_turns = 0.75;     // turns of the thread about an instrument that count as a loop
+  double tight_tension = 5e-3;  // [N], peak of the thread's tension that a tightened throw has seen
+  double tight_turns =
+      2.5;                // length of the knotted part in circumferences of the post, below which it is tight
+  double overload = 0.8;  // share of the thread's strength that counts as overload
+  double grip_limit = 2.0;  // [N], squeeze above which the trainee is warned
 };
 
 struct Task {
   std::string name, title, description;
-  std::string suture;                    // model name
-  bool demonstration_only = false;       // never passes
-  double time_limit = 600.0;             // [s], scored time that is recorded
-  std::vector<std::string> accept;       // knot classes that pass
-  int throws = 2;                        // throws that the knot has
-  double required_security = 0.0;        // [N], a knot that slips below this does not pass
-  double pass_points = 0.0;              // least total
+  std::string suture;               // model name
+  bool demonstration_only = false;  // never passes
+  double time_limit = 600.0;        // [s], scored time that is recorded
+  std::vector<std::string> accept;  // knot classes that pass
+  int throws = 2;                   // throws that the knot has
+  double required_security = 0.0;   // [N], a knot that slips below this does not pass
+  double pass_points = 0.0;         // least total
   Recognition recognition;
   std::vector<TaskStep> steps;
   std::vector<RubricItem> rubric;

@@ -21,7 +21,10 @@ double largest_tension(const Observation& o) {
 }  // namespace
 
 TaskSession::TaskSession(Task task, const SceneDescription& scene)
-    : task_(std::move(task)), scene_(scene), recogniser_(task_, scene_), log_(scene.n_tools, task_.time_limit) {
+    : task_(std::move(task)),
+      scene_(scene),
+      recogniser_(task_, scene_),
+      log_(scene.n_tools, task_.time_limit) {
   events_.reserve(kMaxEvents);
   for (auto& kind : last_kept_) kind.fill(-1.0);
 }
@@ -39,7 +42,8 @@ bool TaskSession::scoring_paused(const Observation& o) {
 
 /// Events that may come every step are kept only every kEventPause for each tool; all others are kept.
 bool TaskSession::crowds_out(const WorldEvent& e, double time) {
-  constexpr std::array<std::string_view, 4> kFrequent = {"overrun", "slip", "solver-trouble", "thread-overload"};
+  constexpr std::array<std::string_view, 4> kFrequent = {"overrun", "slip", "solver-trouble",
+                                                         "thread-overload"};
   const auto kind = std::find(kFrequent.begin(), kFrequent.end(), e.name);
   if (kind == kFrequent.end()) return false;
   const auto tool = static_cast<std::size_t>(std::clamp(e.tool + 1, 0, 3));
@@ -89,8 +93,10 @@ void TaskSession::observe(const Observation& o) noexcept {
 std::vector<TaskWarning> TaskSession::warnings() const {
   std::vector<TaskWarning> list;
   if (!observed_) return list;
-  if (failed_) list.push_back({"danger", "scoring-stopped", "The trainer ran out of memory: scoring has stopped."});
-  if (paused_) list.push_back({"danger", "input-lost", "An instrument's input is silent: scoring is paused."});
+  if (failed_)
+    list.push_back({"danger", "scoring-stopped", "The trainer ran out of memory: scoring has stopped."});
+  if (paused_)
+    list.push_back({"danger", "input-lost", "An instrument's input is silent: scoring is paused."});
   if (last_.broken) list.push_back({"danger", "thread-broken", "The thread has broken."});
   const double strength = scene_.thread_strength;
   if (!last_.broken && strength > 0.0 && largest_tension(last_) > task_.recognition.overload * strength) {
@@ -104,7 +110,8 @@ std::vector<TaskWarning> TaskSession::warnings() const {
   const std::string& seen = recogniser_.knot_class();
   const bool accepted = std::find(task_.accept.begin(), task_.accept.end(), seen) != task_.accept.end();
   if (recogniser_.n_throws() >= task_.throws && !accepted) {
-    list.push_back({"warn", "wrong-knot", "The knot now is: " + seen + ". Asked for: " + task_.accept.front() + "."});
+    list.push_back(
+        {"warn", "wrong-knot", "The knot now is: " + seen + ". Asked for: " + task_.accept.front() + "."});
   }
   if (elapsed_ > task_.time_limit) {
     list.push_back({"warn", "time-limit", "The time limit has passed: movements are no longer recorded."});

@@ -1,9 +1,9 @@
 #pragma once
-// One run of a task: watches observations, says where the trainee is, and gives the result. Call observe() after every step
-// of the world, in order. It is cheap (sampling into reserved memory; the knot is looked at five times a second of scene time,
-// below a millisecond each for a thread of 200 nodes); it neither throws nor blocks. Scored time stands still while an
-// instrument that was driven before is not (input_valid false), or none is. After the last step scoring stops; only the knot
-// is still taken from the newest observation.
+// One run of a task: watches observations, says where the trainee is, and gives the result. Call observe()
+// after every step of the world, in order. It is cheap (sampling into reserved memory; the knot is looked at
+// five times a second of scene time, below a millisecond each for a thread of 200 nodes); it neither throws
+// nor blocks. Scored time stands still while an instrument that was driven before is not (input_valid false),
+// or none is. After the last step scoring stops; only the knot is still taken from the newest observation.
 
 #include <array>
 #include <optional>
@@ -24,11 +24,11 @@ struct TaskWarning {
 };
 
 struct TaskStatus {
-  int step_index = 0;                 // equals the number of steps when done
+  int step_index = 0;  // equals the number of steps when done
   std::string step_name;
-  std::vector<std::string> steps;     // names of all
+  std::vector<std::string> steps;  // names of all
   std::string hint;
-  double elapsed = 0.0;               // [s], scored time
+  double elapsed = 0.0;  // [s], scored time
   bool done = false;
   bool paused = false;                // scoring stands still
   std::string knot_class;             // as seen now
@@ -41,8 +41,8 @@ class TaskSession {
 
   void observe(const Observation& o) noexcept;
   TaskStatus status() const;
-  /// Events since the start, in order, at most kMaxEvents of the world's. Events that may come every step ("overrun", "slip",
-  /// "solver-trouble", "thread-overload") are kept once every kEventPause for each tool.
+  /// Events since the start, in order, at most kMaxEvents of the world's. Events that may come every step
+  /// ("overrun", "slip", "solver-trouble", "thread-overload") are kept once every kEventPause for each tool.
   const std::vector<TaskEvent>& events() const { return events_; }
   bool done() const { return recogniser_.done(); }
   const Task& task() const { return task_; }
@@ -66,12 +66,13 @@ class TaskSession {
   StepRecogniser recogniser_;
   SeriesLog log_;
   std::vector<TaskEvent> events_;
-  Observation last_;             // newest
+  Observation last_;  // newest
   bool observed_ = false;
   bool paused_ = true;
-  bool failed_ = false;          // watching failed (out of memory): scoring stopped, said in the result
+  bool failed_ = false;           // watching failed (out of memory): scoring stopped, said in the result
   std::array<bool, 3> driven_{};  // instrument has had a valid input
-  std::array<std::array<double, 4>, 4> last_kept_{};  // [s], of each frequent kind and tool (from -1), -1 never
+  std::array<std::array<double, 4>, 4>
+      last_kept_{};              // [s], of each frequent kind and tool (from -1), -1 never
   double previous_time_ = -1.0;  // [s]
   double elapsed_ = 0.0;         // [s], scored
   double tension_ = 0.0;         // [N], largest since the last sample

@@ -1,5 +1,6 @@
 #pragma once
-// The part of the thread that can hold the knot: without what was cut off and, if the thread has parted, its longer piece.
+// The part of the thread that can hold the knot: without what was cut off and, if the thread has parted, its
+// longer piece.
 
 #include "world/observation.h"
 

@@ -22,11 +22,14 @@ struct Case {
   int enclosed;             // 1 round the post, 0 not, -1 not looked at
 };
 
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.name;
+}
 
 class KnownKnot : public testing::TestWithParam<Case> {};
 
-/// 1,000 rotations (so also projections), random subdivisions and perturbations below half the strands' distance.
+/// 1,000 rotations (so also projections), random subdivisions and perturbations below half the strands'
+/// distance.
 TEST_P(KnownKnot, IsNamedRightInEveryVariant) {
   const Case& known = GetParam();
   const Points shape = known.shape();
@@ -45,8 +48,8 @@ TEST_P(KnownKnot, IsNamedRightInEveryVariant) {
                        (known.composition == nullptr || report.composition == known.composition);
     if (right) continue;
     ++wrong;
-    ADD_FAILURE() << "variant " << k << ": " << report.knot_class << " [" << report.composition << "], V = "
-                  << report.jones << ", " << report.note;
+    ADD_FAILURE() << "variant " << k << ": " << report.knot_class << " [" << report.composition
+                  << "], V = " << report.jones << ", " << report.note;
   }
 }
 
@@ -72,50 +75,56 @@ constexpr double kTouching = 25e-6;  // [m], strands one diameter apart
 
 INSTANTIATE_TEST_SUITE_P(
     Knots, KnownKnot,
-    testing::Values(
-        Case{"untied", throws({}), "unknot", "", -1},                                      //
-        Case{"overhand_right", throws({3}), "overhand", "1", 1},                          //
-        Case{"overhand_left", throws({-3}), "overhand", "1", 1},                            //
-        Case{"square", throws({3, -3}), "square", "1=1", 1},                               //
-        Case{"square_mirrored", throws({-3, 3}), "square", "1=1", 1},                      //
-        Case{"granny", throws({3, 3}), "granny", "1x1", 1},                                //
-        Case{"granny_mirrored", throws({-3, -3}), "granny", "1x1", 1},                     //
-        Case{"surgeons", throws({5, -3}), "surgeons", "2=1", 1},                           //
-        Case{"surgeons_mirrored", throws({-5, 3}), "surgeons", "2=1", 1},                  //
-        Case{"surgeons_reversed", throws({3, -5}), "other", "1=2", 1},                     //
-        Case{"surgeons_granny", throws({5, 3}), "other", "2x1", 1},                        //
-        Case{"double_throw", throws({5}), "other", "2", 1},                                //
-        Case{"triple", throws({3, -3, 3}), "triple", "1=1=1", 1},                          //
-        Case{"triple_with_granny_below", throws({3, 3, -3}), "other", "1x1=1", 1},         //
-        Case{"triple_with_granny_above", throws({-3, 3, 3}), "other", "1=1x1", 1},         //
-        Case{"surgeons_and_one", throws({5, -3, 3}), "other", "2=1=1", 1},                 //
-        Case{"square_touching", throws({3, -3}, kTouching), "square", "1=1", 1},           //
-        Case{"granny_touching", throws({-3, -3}, kTouching), "granny", "1x1", 1},          //
-        Case{"surgeons_touching", throws({5, -3}, kTouching), "surgeons", "2=1", 1},       //
-        Case{"triple_touching", throws({3, -3, 3}, kTouching), "triple", "1=1=1", 1}),
+    testing::Values(Case{"untied", throws({}), "unknot", "", -1},                                 //
+                    Case{"overhand_right", throws({3}), "overhand", "1", 1},                      //
+                    Case{"overhand_left", throws({-3}), "overhand", "1", 1},                      //
+                    Case{"square", throws({3, -3}), "square", "1=1", 1},                          //
+                    Case{"square_mirrored", throws({-3, 3}), "square", "1=1", 1},                 //
+                    Case{"granny", throws({3, 3}), "granny", "1x1", 1},                           //
+                    Case{"granny_mirrored", throws({-3, -3}), "granny", "1x1", 1},                //
+                    Case{"surgeons", throws({5, -3}), "surgeons", "2=1", 1},                      //
+                    Case{"surgeons_mirrored", throws({-5, 3}), "surgeons", "2=1", 1},             //
+                    Case{"surgeons_reversed", throws({3, -5}), "other", "1=2", 1},                //
+                    Case{"surgeons_granny", throws({5, 3}), "other", "2x1", 1},                   //
+                    Case{"double_throw", throws({5}), "other", "2", 1},                           //
+                    Case{"triple", throws({3, -3, 3}), "triple", "1=1=1", 1},                     //
+                    Case{"triple_with_granny_below", throws({3, 3, -3}), "other", "1x1=1", 1},    //
+                    Case{"triple_with_granny_above", throws({-3, 3, 3}), "other", "1=1x1", 1},    //
+                    Case{"surgeons_and_one", throws({5, -3, 3}), "other", "2=1=1", 1},            //
+                    Case{"square_touching", throws({3, -3}, kTouching), "square", "1=1", 1},      //
+                    Case{"granny_touching", throws({-3, -3}, kTouching), "granny", "1x1", 1},     //
+                    Case{"surgeons_touching", throws({5, -3}, kTouching), "surgeons", "2=1", 1},  //
+                    Case{"triple_touching", throws({3, -3, 3}, kTouching), "triple", "1=1=1", 1}),
     [](const auto& info) { return std::string(info.param.name); });
 
-INSTANTIATE_TEST_SUITE_P(
-    Hitches, KnownKnot,
-    testing::Values(Case{"from_square", hitches({1, -1}), "half-hitches", "1=1", 1},       //
-                    Case{"from_granny", hitches({1, 1}), "half-hitches", "1x1", 1},        //
-                    Case{"from_granny_mirrored", hitches({-1, -1}), "half-hitches", "1x1", 1},
-                    Case{"three", hitches({-1, 1, -1}), "half-hitches", "1=1=1", 1}),
-    [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Hitches, KnownKnot,
+                         testing::Values(Case{"from_square", hitches({1, -1}), "half-hitches", "1=1", 1},  //
+                                         Case{"from_granny", hitches({1, 1}), "half-hitches", "1x1", 1},   //
+                                         Case{"from_granny_mirrored", hitches({-1, -1}), "half-hitches",
+                                              "1x1", 1},
+                                         Case{"three", hitches({-1, 1, -1}), "half-hitches", "1=1=1", 1}),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(
     Others, KnownKnot,
-    testing::Values(
-        Case{"trefoil_in_a_tail", braid(2, {1, 1, 1}), "overhand", nullptr, 0},            //
-        Case{"figure_eight", braid(3, {1, -2, 1, -2}), "other", nullptr, -1},              //
-        Case{"five_one", braid(2, {1, 1, 1, 1, 1}), "other", nullptr, -1},                 //
-        Case{"five_two", braid(3, {1, 1, 1, 2, -1, 2}), "other", nullptr, -1},             //
-        Case{"six_one_determinant_nine", braid(4, {1, 1, 2, -1, -3, 2, -3}), "other", nullptr, -1},
-        Case{"eight_twenty_alexander_of_square", braid(3, {1, 1, 1, -2, -1, -1, -1, -2}), "other", nullptr, -1},
-        Case{"unknot_of_mortons_braid", braid(4, {-3, -3, 2, -3, 2, 1, 1, 1, -2, 1, -2}), "unknot", nullptr, -1},
-        Case{"unknot_doubled_trefoil", [] { return doubled(open_braid(2, {1, 1, 1})); }, "unknot", nullptr, -1},
-        Case{"unknot_doubled_8_19", [] { return doubled(open_braid(3, {1, 1, 1, 2, 1, 1, 1, 2})); }, "unknot",
-             nullptr, -1}),
+    testing::
+        Values(Case{"trefoil_in_a_tail", braid(2, {1, 1, 1}), "overhand", nullptr, 0},  //
+               Case{"figure_eight", braid(3, {1, -2, 1, -2}), "other", nullptr, -1},    //
+               Case{"five_one", braid(2, {1, 1, 1, 1, 1}), "other", nullptr, -1},       //
+               Case{"five_two", braid(3, {1, 1, 1, 2, -1, 2}), "other", nullptr, -1},   //
+               Case{"six_one_determinant_nine", braid(4, {1, 1, 2, -1, -3, 2, -3}), "other", nullptr, -1},
+               Case{"eight_twenty_alexander_of_square", braid(3, {1, 1, 1, -2, -1, -1, -1, -2}), "other",
+                    nullptr, -1},
+               Case{"unknot_of_mortons_braid", braid(4, {-3, -3, 2, -3, 2, 1, 1, 1, -2, 1, -2}), "unknot",
+                    nullptr, -1},
+               Case{
+                   "unknot_doubled_trefoil",
+                   [] {
+                     return doubled(open_braid(2, {1, 1, 1}));
+                   },
+                   "unknot", nullptr, -1},
+               Case{"unknot_doubled_8_19", [] { return doubled(open_braid(3, {1, 1, 1, 2, 1, 1, 1, 2})); },
+                    "unknot", nullptr, -1}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(KnotClassifier, SeparatesWhatDeterminantAndAlexanderCannot) {
@@ -130,7 +139,8 @@ TEST(KnotClassifier, SeparatesWhatDeterminantAndAlexanderCannot) {
 TEST(KnotClassifier, ReportsTheHandOfEveryThrow) {
   EXPECT_EQ(classify_knot(throws_round_post({3}), kRadius, nullptr).throws, (std::vector<int>{3}));
   EXPECT_EQ(classify_knot(throws_round_post({-5, 3}), kRadius, nullptr).throws, (std::vector<int>{-5, 3}));
-  EXPECT_EQ(classify_knot(throws_round_post({-3, -3, 3}), kRadius, nullptr).throws, (std::vector<int>{-3, -3, 3}));
+  EXPECT_EQ(classify_knot(throws_round_post({-3, -3, 3}), kRadius, nullptr).throws,
+            (std::vector<int>{-3, -3, 3}));
 }
 
 TEST(KnotClassifier, GoodSquareKnotTurnsBothStrandsAlike) {
@@ -154,7 +164,8 @@ TEST(KnotClassifier, RefusesNonsenseWithoutThrowing) {
 TEST(KnotClassifier, SameInputSameReport) {
   const Points nodes = throws_round_post({5, -3});
   EXPECT_EQ(classify_knot(nodes, kRadius, nullptr).jones, classify_knot(nodes, kRadius, nullptr).jones);
-  EXPECT_EQ(classify_knot(nodes, kRadius, nullptr).n_crossings, classify_knot(nodes, kRadius, nullptr).n_crossings);
+  EXPECT_EQ(classify_knot(nodes, kRadius, nullptr).n_crossings,
+            classify_knot(nodes, kRadius, nullptr).n_crossings);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ TEST(KnotClosure, OffersDirectionsWellApart) {
   for (std::size_t i = 0; i < closures.size(); ++i) {
     EXPECT_NEAR(closures[i].first.norm(), 1.0, 1e-12);
     for (std::size_t j = i + 1; j < closures.size(); ++j) {
-      const bool apart = closures[i].first.dot(closures[j].first) < 0.77 || closures[i].last.dot(closures[j].last) < 0.77;
+      const bool apart =
+          closures[i].first.dot(closures[j].first) < 0.77 || closures[i].last.dot(closures[j].last) < 0.77;
       EXPECT_TRUE(apart) << i << " " << j;
     }
   }

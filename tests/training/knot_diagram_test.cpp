@@ -41,7 +41,8 @@ TEST(KnotDiagram, RefusesADegenerateDirection) {
   // Seen along x the first edge and a corner of another lie on one line.
   const GridPolygon square = {Vec3(0, 0, 0), Vec3(1000, 0, 0), Vec3(1000, 0, 1000), Vec3(0, 0, 1000)};
   EXPECT_FALSE(project(square, Vec3(1, 0, 0)).has_value());
-  const GridPolygon corner_on_edge = {Vec3(-500, 0, 0), Vec3(500, 0, 0), Vec3(500, 500, 9), Vec3(0, 0, 300), Vec3(-500, 700, 9)};
+  const GridPolygon corner_on_edge = {Vec3(-500, 0, 0), Vec3(500, 0, 0), Vec3(500, 500, 9), Vec3(0, 0, 300),
+                                      Vec3(-500, 700, 9)};
   EXPECT_FALSE(project(corner_on_edge, Vec3(0, 0, 1)).has_value());
 }
 
@@ -57,7 +58,8 @@ TEST(KnotDiagram, PredicateIsExactWhereDoublesAreNot) {
 
 TEST(KnotDiagram, WritheOfAPlanarPictureOfATrefoilIsThree) {
   const Points thread = shapes::open_braid(2, {1, 1, 1});
-  const Points closed = close_curve(thread, {Vec3(1, 0.1, 0.05).normalized(), Vec3(1, 0.1, -0.05).normalized()});
+  const Points closed =
+      close_curve(thread, {Vec3(1, 0.1, 0.05).normalized(), Vec3(1, 0.1, -0.05).normalized()});
   GridPolygon polygon = to_grid(closed, 3);
   KnotDiagram diagram = project_best(polygon, 3, 20);
   EXPECT_EQ(diagram.crossings(), 3);

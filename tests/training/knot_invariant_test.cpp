@@ -24,9 +24,12 @@ KnotDiagram braid(int strands, const std::vector<int>& word) {
   return diagram;
 }
 
-Laurent poly(int low, std::vector<std::int64_t> c) { return Laurent(low, std::move(c)); }
+Laurent poly(int low, std::vector<std::int64_t> c) {
+  return Laurent(low, std::move(c));
+}
 
-// Jones and Alexander polynomials as tabulated (Rolfsen names; Jones 1985; KnotInfo's braids). A table gives one hand.
+// Jones and Alexander polynomials as tabulated (Rolfsen names; Jones 1985; KnotInfo's braids). A table gives
+// one hand.
 struct Known {
   const char* name;
   int strands;
@@ -78,19 +81,22 @@ TEST(KnotInvariant, MultipliesOverConnectedSums) {
   EXPECT_EQ(jones_polynomial(braid(3, {1, 1, 1, -2, -2, -2})), v3 * m3);
   EXPECT_EQ(jones_polynomial(braid(3, {1, 1, 1, 1, 1, -2, -2, -2})), v5 * m3);
   EXPECT_FALSE(v3 * v3 == v3 * m3);
-  EXPECT_EQ(alexander_polynomial(braid(3, {1, 1, 1, 2, 2, 2})), alexander_polynomial(braid(3, {1, 1, 1, -2, -2, -2})));
+  EXPECT_EQ(alexander_polynomial(braid(3, {1, 1, 1, 2, 2, 2})),
+            alexander_polynomial(braid(3, {1, 1, 1, -2, -2, -2})));
 }
 
 TEST(KnotInvariant, DeterminantFromBothPolynomials) {
   for (const Known& k : known()) {
     const KnotDiagram diagram = braid(k.strands, k.word);
-    EXPECT_EQ(std::abs(jones_polynomial(diagram).at_minus_one()), std::abs(alexander_polynomial(diagram).at_minus_one()))
+    EXPECT_EQ(std::abs(jones_polynomial(diagram).at_minus_one()),
+              std::abs(alexander_polynomial(diagram).at_minus_one()))
         << k.name;
   }
 }
 
 TEST(KnotInvariant, FortyAndMoreCrossings) {
-  // T(4,15): 45 crossings, width 8. V(T(p,q)) = t^((p-1)(q-1)/2) (1 - t^(p+1) - t^(q+1) + t^(p+q)) / (1 - t^2).
+  // T(4,15): 45 crossings, width 8. V(T(p,q)) = t^((p-1)(q-1)/2) (1 - t^(p+1) - t^(q+1) + t^(p+q)) / (1 -
+  // t^2).
   std::vector<int> word;
   for (int k = 0; k < 15; ++k) word.insert(word.end(), {1, 2, 3});
   Laurent numerator = poly(0, {1});

@@ -15,7 +15,8 @@ TEST(KnotShape, CoreIsTheShortestRunWithTheKnot) {
   const Laurent square = jones_torus(3) * jones_torus(-3);
   KnotReport report;
   find_core(thread, square, 1, report);
-  EXPECT_EQ(jones_of_thread(thread.middleCols(report.core_begin, report.core_end - report.core_begin + 1), 1), square);
+  EXPECT_EQ(jones_of_thread(thread.middleCols(report.core_begin, report.core_end - report.core_begin + 1), 1),
+            square);
   const auto shorter = thread.middleCols(report.core_begin + 1, report.core_end - report.core_begin);
   EXPECT_FALSE(jones_of_thread(shorter, 1) == square);
   EXPECT_GT(report.core_begin, 9);  // the tails' ten nodes are no part of it
@@ -49,7 +50,8 @@ TEST(KnotShape, WindingRoundThePostHasASign) {
 }
 
 TEST(KnotShape, UnravelsTheOutermostThrowFirst) {
-  for (const std::vector<int>& stack : {std::vector<int>{-3, 5}, {5, -3}, {3, 3, -3}, {-3, 3, 3}, {5, -3, 3}}) {
+  for (const std::vector<int>& stack :
+       {std::vector<int>{-3, 5}, {5, -3}, {3, 3, -3}, {-3, 3, 3}, {5, -3, 3}}) {
     const Points thread = throws_round_post(stack);
     Laurent jones = Laurent::monomial(1, 0);
     for (int t : stack) jones = jones * jones_torus(t);

@@ -1,6 +1,6 @@
 #pragma once
-// Space curves of known knots for the tests, built from their definition: stacks of throws round a post, hitches round a
-// straight strand, closed braids and plats cut open. Lengths in metres.
+// Space curves of known knots for the tests, built from their definition: stacks of throws round a post,
+// hitches round a straight strand, closed braids and plats cut open. Lengths in metres.
 
 #include <algorithm>
 #include <cmath>
@@ -29,9 +29,10 @@ inline PostShape post() {
   return shape;
 }
 
-/// Two strands twisted about a horizontal axis at each throw, stacked upwards from the post. half_twists: +-3 single
-/// throw, +-5 double, + right-handed. gap: distance of the strands' centrelines within a throw.
-inline Points throws_round_post(const std::vector<int>& half_twists, double gap = 60e-6, int nodes_per_twist = 6) {
+/// Two strands twisted about a horizontal axis at each throw, stacked upwards from the post. half_twists: +-3
+/// single throw, +-5 double, + right-handed. gap: distance of the strands' centrelines within a throw.
+inline Points throws_round_post(const std::vector<int>& half_twists, double gap = 60e-6,
+                                int nodes_per_twist = 6) {
   const double r = 0.5 * gap, pitch = 2.0 * gap;  // length along the axis for one half-twist
   const double rise = 4.0 * gap;
   // strands[0] starts at the left, strands[1] at the right; each throw swaps the sides.
@@ -77,7 +78,8 @@ inline Points throws_round_post(const std::vector<int>& half_twists, double gap 
   return from_list(curve);
 }
 
-/// Half-hitches of one strand round the other, which runs straight up from the post. hands: +1 or -1 for each hitch.
+/// Half-hitches of one strand round the other, which runs straight up from the post. hands: +1 or -1 for each
+/// hitch.
 inline Points hitches_round_strand(const std::vector<int>& hands, double gap = 25e-6) {
   const double g = 1.25 * gap;
   const double top = (3.0 * static_cast<double>(hands.size()) + 2.0) * g;
@@ -90,12 +92,13 @@ inline Points hitches_round_strand(const std::vector<int>& hands, double gap = 2
   }
   double z = 0.0;
   for (int hand : hands) {
-    // Seen along y: up on the right, over the straight strand to the left, back behind it, over its own start.
+    // Seen along y: up on the right, over the straight strand to the left, back behind it, over its own
+    // start.
     const double y = hand;
-    for (const Vec3& p : {Vec3(2, 0, -1), Vec3(2, 0, 0), Vec3(1.7, 0.3 * y, 1), Vec3(0.8, 0.9 * y, 1.2),
-                          Vec3(0, 1.0 * y, 1), Vec3(-0.8, 0.7 * y, 0.8), Vec3(-1.1, 0, 0.5), Vec3(-0.8, -0.7 * y, 0.2),
-                          Vec3(0, -1.0 * y, 0), Vec3(1, -0.3 * y, 0), Vec3(2, 1.0 * y, 0), Vec3(3, 0.8 * y, 0),
-                          Vec3(3, 0, 1.5)}) {
+    for (const Vec3& p :
+         {Vec3(2, 0, -1), Vec3(2, 0, 0), Vec3(1.7, 0.3 * y, 1), Vec3(0.8, 0.9 * y, 1.2), Vec3(0, 1.0 * y, 1),
+          Vec3(-0.8, 0.7 * y, 0.8), Vec3(-1.1, 0, 0.5), Vec3(-0.8, -0.7 * y, 0.2), Vec3(0, -1.0 * y, 0),
+          Vec3(1, -0.3 * y, 0), Vec3(2, 1.0 * y, 0), Vec3(3, 0.8 * y, 0), Vec3(3, 0, 1.5)}) {
       curve.push_back(g * p + Vec3(0, 0, z));
     }
     z += 3.0 * g;
@@ -105,10 +108,10 @@ inline Points hitches_round_strand(const std::vector<int>& hands, double gap = 2
   return from_list(curve);
 }
 
-/// Closed braid on `strands` strands (word: +-i swaps strands i and i+1, positive = right-handed crossing when all run the
-/// same way), cut open on its outermost turn, tails led outwards.
+/// Closed braid on `strands` strands (word: +-i swaps strands i and i+1, positive = right-handed crossing
+/// when all run the same way), cut open on its outermost turn, tails led outwards.
 inline Points open_braid(int strands, const std::vector<int>& word, double gap = 60e-6) {
-  const int per = 6;                       // nodes for one letter
+  const int per = 6;                                      // nodes for one letter
   const int letters = static_cast<int>(word.size()) + 1;  // one quiet sector in which the cut is made
   const double ring = gap * (letters * 3.0 + 4.0) / (2.0 * kPi) + 2.0 * gap * strands;
   const auto place = [&](double sector, double lane, double height) {
@@ -119,7 +122,8 @@ inline Points open_braid(int strands, const std::vector<int>& word, double gap =
   std::vector<Vec3> curve;
   int lane = strands - 1;
   for (int turn = 0; turn < strands; ++turn) {
-    for (int k = turn == 0 ? per / 2 : 0; k < per; ++k) curve.push_back(place(static_cast<double>(k) / per, lane, 0.0));
+    for (int k = turn == 0 ? per / 2 : 0; k < per; ++k)
+      curve.push_back(place(static_cast<double>(k) / per, lane, 0.0));
     for (int l = 1; l < letters; ++l) {
       const int letter = word[static_cast<std::size_t>(l - 1)], low = std::abs(letter) - 1;
       const bool rises = lane == low, falls = lane == low + 1;
@@ -142,7 +146,8 @@ inline Points open_braid(int strands, const std::vector<int>& word, double gap =
   return from_list(whole);
 }
 
-/// A thread led along `path` and back beside it: an unknot whatever the path, as the bight can be drawn out again.
+/// A thread led along `path` and back beside it: an unknot whatever the path, as the bight can be drawn out
+/// again.
 inline Points doubled(const Points& path, double gap = 12e-6) {
   std::vector<Vec3> curve;
   const Eigen::Index n = path.cols();
@@ -180,7 +185,8 @@ inline Points varied(const Points& p, double distance, Rng& rng) {
   std::vector<Vec3> nodes;
   for (Eigen::Index k = 0; k < p.cols(); ++k) {
     nodes.push_back(p.col(k));
-    if (k + 1 < p.cols() && rng.below(3) == 0) nodes.push_back(p.col(k) + rng.uniform(0.2, 0.8) * (p.col(k + 1) - p.col(k)));
+    if (k + 1 < p.cols() && rng.below(3) == 0)
+      nodes.push_back(p.col(k) + rng.uniform(0.2, 0.8) * (p.col(k + 1) - p.col(k)));
   }
   const double amount = 0.24 * distance * rng.uniform();
   for (Vec3& node : nodes) node = turn * (node + amount * rng.direction());

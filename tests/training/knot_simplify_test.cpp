@@ -45,7 +45,8 @@ TEST(KnotSimplify, KeepsTheKnotThatTheFullCurveHas) {
 TEST(KnotSimplify, JitterIsFarBelowTheThread) {
   const Points thread = throws_round_post({3, -3});
   const GridPolygon a = to_grid(thread, 1), b = to_grid(thread, 2);
-  const double step = (thread.rowwise().maxCoeff() - thread.rowwise().minCoeff()).maxCoeff() / 0x1.0p27;  // [m]
+  const double step =
+      (thread.rowwise().maxCoeff() - thread.rowwise().minCoeff()).maxCoeff() / 0x1.0p27;  // [m]
   double moved = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) moved = std::max(moved, (a[k] - b[k]).norm() * step);
   EXPECT_GT(moved, 0.0);

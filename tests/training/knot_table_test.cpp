@@ -22,7 +22,8 @@ TEST(KnotTable, NoTwoStacksShareAPolynomial) {
   for (int a : kinds) {
     for (int b : kinds) {
       for (int c : kinds) {
-        std::vector<int> throws = {a, b, c}, found = throws_of(jones_torus(a) * jones_torus(b) * jones_torus(c));
+        std::vector<int> throws = {a, b, c},
+                         found = throws_of(jones_torus(a) * jones_torus(b) * jones_torus(c));
         std::sort(throws.begin(), throws.end());
         std::sort(found.begin(), found.end());
         EXPECT_EQ(found, throws);

@@ -15,9 +15,15 @@ std::vector<double> sampled(double begin, double end, double fs, double (*f)(dou
   return x;
 }
 
-double bell(double t) { return std::exp(-5.0 * t * t); }
-double minimum_jerk_speed(double t) { return 30.0 * t * t * (1.0 - t) * (1.0 - t); }
-double sine(double t) { return std::sin(2.0 * std::numbers::pi * 3.0 * t); }
+double bell(double t) {
+  return std::exp(-5.0 * t * t);
+}
+double minimum_jerk_speed(double t) {
+  return 30.0 * t * t * (1.0 - t) * (1.0 - t);
+}
+double sine(double t) {
+  return std::sin(2.0 * std::numbers::pi * 3.0 * t);
+}
 
 // Values of the authors' program for exp(-5 t^2), t in [-1, 1), 100 Hz.
 TEST(Metrics, SparcAndLdljOfTheAuthorsExample) {
@@ -45,7 +51,8 @@ TEST(Metrics, SmoothnessDoesNotDependOnSizeOrUnit) {
 TEST(Metrics, TremorMakesAMoveLessSmooth) {
   std::vector<double> speed = sampled(0.0, 1.0, 100.0, minimum_jerk_speed);
   const double calm_sparc = sparc(speed, 100.0), calm_ldlj = ldlj(speed, 100.0);
-  for (std::size_t k = 0; k < speed.size(); ++k) speed[k] += 0.3 * std::sin(0.06 * 2.0 * std::numbers::pi * static_cast<double>(k));
+  for (std::size_t k = 0; k < speed.size(); ++k)
+    speed[k] += 0.3 * std::sin(0.06 * 2.0 * std::numbers::pi * static_cast<double>(k));
   EXPECT_LT(sparc(speed, 100.0), calm_sparc - 0.1);
   EXPECT_LT(ldlj(speed, 100.0), calm_ldlj - 0.5);
 }
@@ -93,7 +100,8 @@ TEST(Metrics, CountsMovesMeasuresPathAndRest) {
   EXPECT_NEAR(idle_time(speed, 100.0), 9.0 - 4 * 0.80, 0.3);
   const Smoothness smooth = smoothness_of(speed, 100.0, found);
   EXPECT_EQ(smooth.sparc.n, 4);
-  EXPECT_NEAR(smooth.sparc.median, -1.46, 0.10);  // -1.41 for the whole move; its slow ends are cut off at the rest speed
+  EXPECT_NEAR(smooth.sparc.median, -1.46,
+              0.10);  // -1.41 for the whole move; its slow ends are cut off at the rest speed
   EXPECT_LT(smooth.ldlj.median, -4.0);
   EXPECT_GT(smooth.ldlj.median, -6.5);
 }
@@ -113,14 +121,16 @@ TEST(Metrics, NoLdljFromQuantisedPositions) {
 
 TEST(Metrics, SmallShakesAreNoMovements) {
   Points path = Points::Zero(3, 500);
-  for (Eigen::Index k = 0; k < 500; ++k) path(1, k) = 25e-6 * std::sin(2.0 * std::numbers::pi * 10.0 * static_cast<double>(k) / 100.0);
+  for (Eigen::Index k = 0; k < 500; ++k)
+    path(1, k) = 25e-6 * std::sin(2.0 * std::numbers::pi * 10.0 * static_cast<double>(k) / 100.0);
   EXPECT_TRUE(movements(speed_of(path, 100.0), 100.0).empty());
 }
 
 TEST(Metrics, BimanualLagAndDominance) {
   const Points first = moves(4);
   Points second = first;
-  for (Eigen::Index k = 0; k < second.cols(); ++k) second.col(k) = 3.0 * first.col(std::max<Eigen::Index>(0, k - 20));
+  for (Eigen::Index k = 0; k < second.cols(); ++k)
+    second.col(k) = 3.0 * first.col(std::max<Eigen::Index>(0, k - 20));
   const Bimanual both = bimanual(first, second, 100.0);
   EXPECT_NEAR(both.lag, 0.20, 0.011);
   EXPECT_GT(both.correlation, 0.99);

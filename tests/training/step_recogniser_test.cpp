@@ -11,7 +11,9 @@ namespace {
 
 using namespace shapes;
 
-Task square_task() { return load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/knot-square/task.yaml"); }
+Task square_task() {
+  return load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/knot-square/task.yaml");
+}
 
 class Watched {
  public:
@@ -81,7 +83,8 @@ TEST(StepRecogniser, FollowsASquareKnotStepByStep) {
   w.scene.now().cut_edge_high = w.scene.now().n_nodes - 6;
   w.run(0.5);
   EXPECT_TRUE(w.recogniser.done());
-  for (const char* name : {"loop-formed", "end-passed", "throw-laid", "throw-tightened"}) EXPECT_EQ(w.count(name), 2) << name;
+  for (const char* name : {"loop-formed", "end-passed", "throw-laid", "throw-tightened"})
+    EXPECT_EQ(w.count(name), 2) << name;
   EXPECT_EQ(w.count("tails-cut"), 1);
   EXPECT_EQ(w.recogniser.knot_class(), "square");
   for (std::size_t k = 1; k < w.events.size(); ++k) EXPECT_GE(w.events[k].time, w.events[k - 1].time);

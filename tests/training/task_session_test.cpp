@@ -22,7 +22,8 @@ Task task_named(const std::string& name) {
 /// Plays a whole tie of these throws in front of a session, tails cut `tail` nodes from the end at the end.
 class Tie {
  public:
-  explicit Tie(const std::string& task, const std::vector<int>& throws) : session(task_named(task), knot_scene()) {
+  explicit Tie(const std::string& task, const std::vector<int>& throws)
+      : session(task_named(task), knot_scene()) {
     hold(throws_round_post({}), 0.5, 0.0);
     for (std::size_t n = 1; n <= throws.size(); ++n) {
       const std::vector<int> so_far(throws.begin(), throws.begin() + static_cast<std::ptrdiff_t>(n));
@@ -65,7 +66,8 @@ const ScoreItem& item(const Result& r, const std::string& name) {
 }
 
 bool warns(const TaskStatus& status, const std::string& code) {
-  return std::any_of(status.warnings.begin(), status.warnings.end(), [&](const TaskWarning& w) { return w.code == code; });
+  return std::any_of(status.warnings.begin(), status.warnings.end(),
+                     [&](const TaskWarning& w) { return w.code == code; });
 }
 
 const SecurityTest kHeld{true, 60e-3, 60e-3, 0.1e-3};
@@ -210,7 +212,8 @@ TEST(TaskSession, JsonHasTheKeysAgreedOn) {
   Tie run("knot-square", {3, -3});
   run.cut();
   const auto json = nlohmann::json::parse(result_json(run.session.finish(kHeld)));
-  for (const char* key : {"task", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths"}) {
+  for (const char* key :
+       {"task", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_EQ(json["knot"]["class"], "square");
