@@ -1,4 +1,5 @@
-// Runs a fuzz target without libFuzzer: every seed as it is, cut short at many places, and with single bits flipped.
+// Runs a fuzz target without libFuzzer: every seed as it is, cut short at many places, and with single bits
+// flipped.
 
 #include <cstdint>
 #include <cstdio>
@@ -21,7 +22,8 @@ int run_seed(const std::vector<std::uint8_t>& seed, filum::Rng& rng) {
   LLVMFuzzerTestOneInput(seed.data(), seed.size());
   if (seed.empty()) return 1;
   for (int i = 0; i < kCuts; ++i) {
-    const std::vector<std::uint8_t> cut(seed.begin(), seed.begin() + static_cast<std::ptrdiff_t>(rng.below(seed.size())));
+    const std::vector<std::uint8_t> cut(seed.begin(),
+                                        seed.begin() + static_cast<std::ptrdiff_t>(rng.below(seed.size())));
     LLVMFuzzerTestOneInput(cut.data(), cut.size());
   }
   std::vector<std::uint8_t> changed = seed;
@@ -45,7 +47,8 @@ int main(int argc, char** argv) {
   int runs = 0;
   for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
     std::ifstream file(entry.path(), std::ios::binary);
-    const std::vector<std::uint8_t> seed{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const std::vector<std::uint8_t> seed{std::istreambuf_iterator<char>(file),
+                                         std::istreambuf_iterator<char>()};
     runs += run_seed(seed, rng);
     ++seeds;
   }

@@ -1,12 +1,14 @@
 #pragma once
-// Broken invariants of our own code stop the program at once with the place and the reason. Bad input is InputError instead.
+// Broken invariants of our own code stop the program at once with the place and the reason. Bad input is
+// InputError instead.
 
 #include <cstdio>
 #include <cstdlib>
 
 namespace filum::detail {
 
-[[noreturn]] inline void ensure_failed(const char* condition, const char* message, const char* file, int line) noexcept {
+[[noreturn]] inline void ensure_failed(const char* condition, const char* message, const char* file,
+                                       int line) noexcept {
   std::fprintf(stderr, "%s:%d: broken invariant: %s (%s)\n", file, line, condition, message);
   std::abort();
 }
@@ -14,8 +16,9 @@ namespace filum::detail {
 }  // namespace filum::detail
 
 /// Checked in every build.
-#define ENSURE(condition, message) \
-  ((condition) ? static_cast<void>(0) : ::filum::detail::ensure_failed(#condition, message, __FILE__, __LINE__))
+#define ENSURE(condition, message)    \
+  ((condition) ? static_cast<void>(0) \
+               : ::filum::detail::ensure_failed(#condition, message, __FILE__, __LINE__))
 
 /// Checked in debug builds only: for conditions inside hot loops.
 #ifdef NDEBUG

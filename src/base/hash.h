@@ -1,6 +1,6 @@
 #pragma once
-// 64-bit XXH3 hashes of arrays: for state hashes and integrity checks, not for secrets. Bits are hashed as stored, so 0.0 and
-// -0.0 differ and a hash is comparable only between runs of the same build.
+// 64-bit XXH3 hashes of arrays: for state hashes and integrity checks, not for secrets. Bits are hashed as
+// stored, so 0.0 and -0.0 differ and a hash is comparable only between runs of the same build.
 
 #include <cstddef>
 #include <cstdint>

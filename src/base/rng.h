@@ -1,6 +1,6 @@
 #pragma once
-// Random numbers that are the same on every platform and library: the engine is fixed by the C++ standard, the
-// distributions are our own (those of <random> differ between libraries).
+// Random numbers that are the same on every platform and library: the engine is fixed by the C++ standard,
+// the distributions are our own (those of <random> differ between libraries).
 
 #include <cmath>
 #include <cstdint>
@@ -28,7 +28,8 @@ class Rng {
     return draw % n;
   }
 
-  /// Mean 0, variance 1 (Marsaglia's polar method; the second value is thrown away to keep the state one engine).
+  /// Mean 0, variance 1 (Marsaglia's polar method; the second value is thrown away to keep the state one
+  /// engine).
   double normal() {
     for (;;) {
       const double u = uniform(-1.0, 1.0);

@@ -24,7 +24,8 @@ struct Symbol {
   Dimension dimension;
 };
 
-constexpr Dimension dim(int m, int kg, int s, int K = 0, int A = 0, int mol = 0, int cd = 0, int rad = 0, int count = 0) {
+constexpr Dimension dim(int m, int kg, int s, int K = 0, int A = 0, int mol = 0, int cd = 0, int rad = 0,
+                        int count = 0) {
   return Dimension{{m, kg, s, K, A, mol, cd, rad, count}};
 }
 
@@ -82,10 +83,9 @@ struct Prefix {
   int exponent;
 };
 constexpr Prefix kPrefixes[] = {
-    {"da", 1},  {"Y", 24},  {"Z", 21},  {"E", 18},  {"P", 15},   {"T", 12},        {"G", 9},
-    {"M", 6},   {"k", 3},   {"h", 2},   {"d", -1},  {"c", -2},   {"m", -3},        {"u", -6},
-    {"n", -9},  {"p", -12}, {"f", -15}, {"a", -18}, {"z", -21},  {"y", -24},       {"\xC2\xB5", -6},
-    {"\xCE\xBC", -6},
+    {"da", 1},  {"Y", 24},  {"Z", 21},  {"E", 18},  {"P", 15},        {"T", 12},        {"G", 9},  {"M", 6},
+    {"k", 3},   {"h", 2},   {"d", -1},  {"c", -2},  {"m", -3},        {"u", -6},        {"n", -9}, {"p", -12},
+    {"f", -15}, {"a", -18}, {"z", -21}, {"y", -24}, {"\xC2\xB5", -6}, {"\xCE\xBC", -6},
 };
 
 struct Unit {
@@ -93,7 +93,8 @@ struct Unit {
   Dimension dimension;
 };
 
-/// Multiplying by 1e-6 is off by an ulp where dividing by 1e6 is not: "25 um" shall be the same double as 25e-6.
+/// Multiplying by 1e-6 is off by an ulp where dividing by 1e6 is not: "25 um" shall be the same double as
+/// 25e-6.
 double scaled(double value, double scale) {
   if (scale < 1.0) {
     const double inverse = std::round(1.0 / scale);
@@ -116,7 +117,8 @@ std::optional<Unit> lookup(std::string_view name) {
     if (symbol == nullptr || !symbol->prefixes) continue;
     const double factor = std::pow(10.0, std::abs(prefix.exponent));
     // 1e3 * 1e-3 is exact this way round, so that kg is exactly 1.
-    return Unit{prefix.exponent > 0 ? scaled(factor, symbol->scale) : symbol->scale / factor, symbol->dimension};
+    return Unit{prefix.exponent > 0 ? scaled(factor, symbol->scale) : symbol->scale / factor,
+                symbol->dimension};
   }
   return std::nullopt;
 }
@@ -177,8 +179,8 @@ class UnitParser {
       return lookup("cmH2O");
     }
     std::size_t n = 0;
-    while (n < rest_.size() && (std::isalpha(static_cast<unsigned char>(rest_[n])) != 0 || rest_[n] == '%' ||
-                                is_micro(n)))
+    while (n < rest_.size() &&
+           (std::isalpha(static_cast<unsigned char>(rest_[n])) != 0 || rest_[n] == '%' || is_micro(n)))
       n += is_micro(n) ? 2 : 1;
     const std::string_view name = rest_.substr(0, n);
     rest_.remove_prefix(n);
@@ -280,7 +282,8 @@ std::string number_text(double value, int digits) {
 Dimension dimension_of(std::string_view unit) {
   if (unit == "degC") return dim(0, 0, 0, 1);
   const std::optional<Unit> parsed = parse_unit(unit);
-  if (!parsed) throw InputError("value", "unit", quoted(unit), "a unit such as mm, GPa, kg/m3, N.m2, deg or -");
+  if (!parsed)
+    throw InputError("value", "unit", quoted(unit), "a unit such as mm, GPa, kg/m3, N.m2, deg or -");
   return parsed->dimension;
 }
 
@@ -296,7 +299,8 @@ double parse_quantity(std::string_view text, std::string_view unit_like, const s
 
 double unit_scale(std::string_view unit) {
   const std::optional<Unit> parsed = parse_unit(unit);
-  if (!parsed) throw InputError("value", "unit", quoted(unit), "a unit such as mm, GPa, kg/m3, N.m2, deg or -");
+  if (!parsed)
+    throw InputError("value", "unit", quoted(unit), "a unit such as mm, GPa, kg/m3, N.m2, deg or -");
   return parsed->scale;
 }
 

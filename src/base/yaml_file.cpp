@@ -24,7 +24,9 @@ std::string shown(const std::string& text) {
   return "\"" + out + (text.size() > 60 ? "...\"" : "\"");
 }
 
-std::string bound_text(double value, std::string_view unit) { return format_quantity(value, unit, 6); }
+std::string bound_text(double value, std::string_view unit) {
+  return format_quantity(value, unit, 6);
+}
 
 std::string expected_range(std::string_view unit, const Range& range) {
   std::string text = unit == "-" ? "a number" : "a quantity like 1.5 " + std::string(unit);
@@ -41,10 +43,10 @@ struct YamlNode::Value {
   enum class Kind { scalar, list, map };
   Kind kind = Kind::scalar;
   std::string scalar;
-  std::vector<std::string> keys;                // of a map, one for each child
+  std::vector<std::string> keys;  // of a map, one for each child
   std::vector<std::unique_ptr<Value>> children;
-  std::vector<bool> used;                       // of a map: the key was asked for
-  bool opened = false;                          // a YamlNode was handed out for it
+  std::vector<bool> used;  // of a map: the key was asked for
+  bool opened = false;     // a YamlNode was handed out for it
   int line = 1;
 
   std::string described() const {
@@ -58,7 +60,8 @@ struct YamlNode::Document {
   Value root;
 };
 
-/// Builds our own tree from the parser's events, so that the bounds hold while parsing and each value knows its line.
+/// Builds our own tree from the parser's events, so that the bounds hold while parsing and each value knows
+/// its line.
 class YamlBuilder final : public YAML::EventHandler {
  public:
   using Value = YamlNode::Value;
@@ -95,7 +98,8 @@ class YamlBuilder final : public YAML::EventHandler {
     bool key_next;  // of a map: the next scalar is a key
   };
 
-  [[noreturn]] void refuse(const YAML::Mark& mark, const std::string& found, const std::string& expected) const {
+  [[noreturn]] void refuse(const YAML::Mark& mark, const std::string& found,
+                           const std::string& expected) const {
     throw InputError(document_.file + ":" + std::to_string(mark.line + 1), "YAML", found, expected);
   }
 
@@ -103,7 +107,8 @@ class YamlBuilder final : public YAML::EventHandler {
     if (anchor != 0) refuse(mark, "an anchor", "no anchors");
     if (!tag.empty() && tag != "?" && tag != "!") refuse(mark, "the tag " + shown(tag), "no tags");
     if (++count_ > kMaxValues) refuse(mark, "more values", "at most " + std::to_string(kMaxValues));
-    if (stack_.size() >= kMaxDepth) refuse(mark, "deeper nesting", "at most " + std::to_string(kMaxDepth) + " levels");
+    if (stack_.size() >= kMaxDepth)
+      refuse(mark, "deeper nesting", "at most " + std::to_string(kMaxDepth) + " levels");
   }
 
   /// The value to fill next: the root or a new child of the innermost list or map.
@@ -186,7 +191,9 @@ YamlNode YamlNode::parse(std::string_view text, const std::string& file_name) {
   return YamlNode(std::move(document), root, "");
 }
 
-std::string YamlNode::below(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+std::string YamlNode::below(const std::string& key) const {
+  return path_.empty() ? key : path_ + "." + key;
+}
 
 std::string YamlNode::where() const {
   return document_->file + ":" + std::to_string(value_->line) + (path_.empty() ? "" : ": " + path_);
@@ -246,13 +253,16 @@ double YamlNode::read_quantity(const Value& value, const std::string& path, std:
   return result;
 }
 
-bool YamlNode::has(const std::string& key) const { return find(key) != nullptr; }
+bool YamlNode::has(const std::string& key) const {
+  return find(key) != nullptr;
+}
 
 double YamlNode::quantity(const std::string& key, std::string_view unit, Range range) const {
   return read_quantity(require(key, expected_range(unit, range)), below(key), unit, range);
 }
 
-double YamlNode::quantity_or(const std::string& key, std::string_view unit, double otherwise, Range range) const {
+double YamlNode::quantity_or(const std::string& key, std::string_view unit, double otherwise,
+                             Range range) const {
   return has(key) ? quantity(key, unit, range) : otherwise;
 }
 
@@ -265,7 +275,8 @@ int YamlNode::integer(const std::string& key, int low, int high) const {
   const std::string& text = scalar(key, expected);
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < low || value > high) refuse(key, expected);
+  if (error != std::errc() || end != text.data() + text.size() || value < low || value > high)
+    refuse(key, expected);
   return value;
 }
 
@@ -299,7 +310,9 @@ bool YamlNode::flag(const std::string& key) const {
   refuse(key, "true or false");
 }
 
-bool YamlNode::flag_or(const std::string& key, bool otherwise) const { return has(key) ? flag(key) : otherwise; }
+bool YamlNode::flag_or(const std::string& key, bool otherwise) const {
+  return has(key) ? flag(key) : otherwise;
+}
 
 Vec3 YamlNode::vec3(const std::string& key, std::string_view unit) const {
   const std::string one(unit == "-" ? "0" : "0 " + std::string(unit));
@@ -308,7 +321,8 @@ Vec3 YamlNode::vec3(const std::string& key, std::string_view unit) const {
   if (values.size() != 3) refuse(key, expected);
   Vec3 result;
   for (int i = 0; i < 3; ++i)
-    result[i] = read_quantity(*values[static_cast<std::size_t>(i)], below(key) + "[" + std::to_string(i) + "]", unit, {});
+    result[i] = read_quantity(*values[static_cast<std::size_t>(i)],
+                              below(key) + "[" + std::to_string(i) + "]", unit, {});
   return result;
 }
 
@@ -319,7 +333,8 @@ Vec3 YamlNode::vec3_or(const std::string& key, std::string_view unit, const Vec3
 std::vector<double> YamlNode::quantities(const std::string& key, std::string_view unit, Range range) const {
   std::vector<double> result;
   for (const auto& value : list(key, "a list of quantities"))
-    result.push_back(read_quantity(*value, below(key) + "[" + std::to_string(result.size()) + "]", unit, range));
+    result.push_back(
+        read_quantity(*value, below(key) + "[" + std::to_string(result.size()) + "]", unit, range));
   return result;
 }
 
@@ -353,7 +368,9 @@ std::vector<YamlNode> YamlNode::items_or_none(const std::string& key) const {
   return has(key) ? items(key) : std::vector<YamlNode>{};
 }
 
-std::vector<std::string> YamlNode::keys() const { return value_->keys; }
+std::vector<std::string> YamlNode::keys() const {
+  return value_->keys;
+}
 
 namespace {
 
@@ -362,13 +379,14 @@ const Value* first_unused(const Value& value, const std::string& path, std::stri
   for (std::size_t i = 0; i < value.children.size(); ++i) {
     const Value& child = *value.children[i];
     const bool is_map = value.kind == Value::Kind::map;
-    const std::string child_path =
-        is_map ? (path.empty() ? value.keys[i] : path + "." + value.keys[i]) : path + "[" + std::to_string(i) + "]";
+    const std::string child_path = is_map ? (path.empty() ? value.keys[i] : path + "." + value.keys[i])
+                                          : path + "[" + std::to_string(i) + "]";
     if (is_map && !value.used[i]) {
       unused_path = child_path;
       return &child;
     }
-    const bool look_below = child.kind == Value::Kind::list || (child.kind == Value::Kind::map && child.opened);
+    const bool look_below =
+        child.kind == Value::Kind::list || (child.kind == Value::Kind::map && child.opened);
     if (!look_below) continue;
     if (const Value* found = first_unused(child, child_path, unused_path)) return found;
   }

@@ -17,7 +17,8 @@ namespace {
 constexpr std::size_t kBlock = 256;  // records at most in one row
 
 void create_tables(soci::session& sql) {
-  sql << "CREATE TABLE texts (kind TEXT NOT NULL, name TEXT NOT NULL, value TEXT NOT NULL, hash INTEGER NOT NULL, "
+  sql << "CREATE TABLE texts (kind TEXT NOT NULL, name TEXT NOT NULL, value TEXT NOT NULL, hash INTEGER NOT "
+         "NULL, "
          "PRIMARY KEY (kind, name))";
   for (const char* table : {"steps", "samples", "events", "array_hashes"})
     sql << "CREATE TABLE " << table
@@ -25,10 +26,10 @@ void create_tables(soci::session& sql) {
 }
 
 std::string json_of(const RecordingMeta& meta) {
-  const nlohmann::json json = {{"program", meta.program},   {"task", meta.task},
-                               {"participant", meta.participant}, {"started_utc", meta.started_utc},
-                               {"input", meta.input},       {"dt", meta.dt},
-                               {"n_tools", meta.n_tools}};
+  const nlohmann::json json = {
+      {"program", meta.program},         {"task", meta.task},   {"participant", meta.participant},
+      {"started_utc", meta.started_utc}, {"input", meta.input}, {"dt", meta.dt},
+      {"n_tools", meta.n_tools}};
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -41,7 +42,8 @@ std::string json_of(const ScoreRecord& score) {
 }  // namespace
 
 struct BlockWriter::Impl {
-  explicit Impl(const std::string& file) : file(file), sql(soci::sqlite3, database::connection_string(file, false)) {}
+  explicit Impl(const std::string& file)
+      : file(file), sql(soci::sqlite3, database::connection_string(file, false)) {}
 
   void put_text(const std::string& kind, const std::string& name, const std::string& value) {
     const long long hash = static_cast<long long>(hash_text(value));
@@ -56,9 +58,9 @@ struct BlockWriter::Impl {
     soci::blob blob(sql);
     long long count = 0;
     long long hash = 0;
-    soci::statement insert =
-        (sql.prepare << "INSERT INTO " << table << " (id, count, data, hash) VALUES (:id, :count, :data, :hash)",
-         soci::use(id), soci::use(count), soci::use(blob), soci::use(hash));
+    soci::statement insert = (sql.prepare << "INSERT INTO " << table
+                                          << " (id, count, data, hash) VALUES (:id, :count, :data, :hash)",
+                              soci::use(id), soci::use(count), soci::use(blob), soci::use(hash));
     for (std::size_t first = 0; first < records.size(); first += kBlock) {
       const std::size_t n = std::min(kBlock, records.size() - first);
       pack_records(std::span<const Record>(records).subspan(first, n));
@@ -79,7 +81,8 @@ struct BlockWriter::Impl {
   } ids;
 };
 
-BlockWriter::BlockWriter(const std::string& file, const RecordingMeta& meta, const std::vector<SourceFile>& sources) {
+BlockWriter::BlockWriter(const std::string& file, const RecordingMeta& meta,
+                         const std::vector<SourceFile>& sources) {
   try {
     impl_ = std::make_unique<Impl>(file);
     impl_->n_tools = meta.n_tools;
@@ -91,7 +94,8 @@ BlockWriter::BlockWriter(const std::string& file, const RecordingMeta& meta, con
     for (const SourceFile& source : sources) impl_->put_text("source", source.path, source.text);
     transaction.commit();
     // WAL only now: the identity of the file must stand in the file itself.
-    if (database::pragma(sql, "journal_mode = WAL") != "wal") throw std::runtime_error("no write-ahead log here");
+    if (database::pragma(sql, "journal_mode = WAL") != "wal")
+      throw std::runtime_error("no write-ahead log here");
     sql << "PRAGMA synchronous = NORMAL";
     // A checkpoint syncs the disk, which may take longer than the 100 ms that may be lost; finish() does it.
     database::pragma(sql, "wal_autocheckpoint = 0");
@@ -101,7 +105,8 @@ BlockWriter::BlockWriter(const std::string& file, const RecordingMeta& meta, con
     impl_.reset();
     std::error_code ignored;
     std::filesystem::remove(file, ignored);
-    throw InputError(file, "recording", database::reason(error), "a folder that can be written, with space left");
+    throw InputError(file, "recording", database::reason(error),
+                     "a folder that can be written, with space left");
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// The recording file from the writing side: one SQLite database, records in blocks with a checksum each. Private to session.
+// The recording file from the writing side: one SQLite database, records in blocks with a checksum each.
+// Private to session.
 
 #include <memory>
 #include <optional>
@@ -12,7 +13,8 @@ namespace filum {
 
 class BlockWriter {
  public:
-  /// Creates `file` with its tables, meta and sources, then switches to WAL. Throws InputError; leaves no file behind then.
+  /// Creates `file` with its tables, meta and sources, then switches to WAL. Throws InputError; leaves no
+  /// file behind then.
   BlockWriter(const std::string& file, const RecordingMeta& meta, const std::vector<SourceFile>& sources);
   ~BlockWriter();
 

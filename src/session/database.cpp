@@ -34,7 +34,8 @@ Header read_header(const std::string& file) {
   header.exists = static_cast<bool>(stream);
   stream.read(bytes.data(), bytes.size());
   const auto* unsigned_bytes = reinterpret_cast<const unsigned char*>(bytes.data());
-  header.is_sqlite = stream.gcount() == bytes.size() && std::string_view(bytes.data(), 15) == "SQLite format 3";
+  header.is_sqlite =
+      stream.gcount() == bytes.size() && std::string_view(bytes.data(), 15) == "SQLite format 3";
   if (header.is_sqlite) {
     header.format = big_endian(unsigned_bytes + 60);
     header.application_id = big_endian(unsigned_bytes + 68);
@@ -42,7 +43,8 @@ Header read_header(const std::string& file) {
   return header;
 }
 
-void require_format(const std::string& file, const std::string& what, std::int32_t application_id, int newest_format) {
+void require_format(const std::string& file, const std::string& what, std::int32_t application_id,
+                    int newest_format) {
   const Header header = read_header(file);
   if (!header.exists) throw InputError(file, "file", "nothing that can be read", what);
   if (!header.is_sqlite || header.application_id != application_id)
@@ -68,8 +70,9 @@ std::string pragma(soci::session& sql, const std::string& text) {
 std::string reason(const std::exception& error) {
   std::string text = error.what();
   if (const std::size_t at = text.find(" while "); at != std::string::npos) text.erase(at);
-  for (const std::string_view prefix : {"sqlite3_statement_backend::loadOne: ", "sqlite3_statement_backend::prepare: ",
-                                        "Cannot establish connection to the database. "})
+  for (const std::string_view prefix :
+       {"sqlite3_statement_backend::loadOne: ", "sqlite3_statement_backend::prepare: ",
+        "Cannot establish connection to the database. "})
     if (text.starts_with(prefix)) text.erase(0, prefix.size());
   return text;
 }

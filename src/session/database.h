@@ -25,8 +25,10 @@ struct Header {
 };
 Header read_header(const std::string& file);
 
-/// Throws InputError unless the file is a database of ours (`what`, with this application id) that this program can read.
-void require_format(const std::string& file, const std::string& what, std::int32_t application_id, int newest_format);
+/// Throws InputError unless the file is a database of ours (`what`, with this application id) that this
+/// program can read.
+void require_format(const std::string& file, const std::string& what, std::int32_t application_id,
+                    int newest_format);
 
 /// Writes application id and format.
 void mark(soci::session& sql, std::int32_t application_id, int format);

@@ -13,14 +13,14 @@ namespace filum {
 
 struct Column {
   std::string name;
-  std::string unit;     // "m", "N", "count", "-"
+  std::string unit;  // "m", "N", "count", "-"
   std::string meaning;
   std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>> values;
 };
 
 struct Table {
-  std::string name;        // file name in CSV, group in HDF5
-  double rate = 0.0;       // [Hz], 0: not regular
+  std::string name;   // file name in CSV, group in HDF5
+  double rate = 0.0;  // [Hz], 0: not regular
   std::string meaning;
   std::vector<Column> columns;  // all of one length
 };
@@ -28,15 +28,18 @@ struct Table {
 /// The stored channels: "inputs", "samples", "events", "array_hashes", "score".
 std::vector<Table> recorded_tables(const RecordingReader& recording);
 
-/// Re-steps the recording in `world` (fresh from its sources): tool poses, velocities, forces, grips, thread tension. "simulated".
+/// Re-steps the recording in `world` (fresh from its sources): tool poses, velocities, forces, grips, thread
+/// tension. "simulated".
 Table simulated_table(const RecordingReader& recording, World& world);
 
-/// One NAME.csv for each table and data-dictionary.csv (file, column, unit, rate_hz, meaning) in `folder`, which is made.
-/// Returns the files written. Throws InputError when the folder cannot be written.
-std::vector<std::string> export_csv(const std::vector<Table>& tables, const RecordingMeta& meta, const std::string& folder);
+/// One NAME.csv for each table and data-dictionary.csv (file, column, unit, rate_hz, meaning) in `folder`,
+/// which is made. Returns the files written. Throws InputError when the folder cannot be written.
+std::vector<std::string> export_csv(const std::vector<Table>& tables, const RecordingMeta& meta,
+                                    const std::string& folder);
 
-/// folder/recording.h5 (a group for each table; attributes rate_hz, description; unit and description on each data set) and
-/// data-dictionary.csv.
-std::vector<std::string> export_hdf5(const std::vector<Table>& tables, const RecordingMeta& meta, const std::string& folder);
+/// folder/recording.h5 (a group for each table; attributes rate_hz, description; unit and description on each
+/// data set) and data-dictionary.csv.
+std::vector<std::string> export_hdf5(const std::vector<Table>& tables, const RecordingMeta& meta,
+                                     const std::string& folder);
 
 }  // namespace filum

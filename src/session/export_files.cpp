@@ -18,7 +18,9 @@ std::size_t length(const Column& column) {
   return std::visit([](const auto& values) { return values.size(); }, column.values);
 }
 
-std::size_t rows(const Table& table) { return table.columns.empty() ? 0 : length(table.columns.front()); }
+std::size_t rows(const Table& table) {
+  return table.columns.empty() ? 0 : length(table.columns.front());
+}
 
 /// RFC 4180: quotes round fields that need them, quotes doubled.
 void append_field(std::string& line, const std::string& text) {
@@ -43,7 +45,8 @@ void append_number(std::string& line, double value) {
 }
 
 void append_cell(std::string& line, const Column& column, std::size_t row) {
-  if (const auto* numbers = std::get_if<std::vector<double>>(&column.values)) return append_number(line, (*numbers)[row]);
+  if (const auto* numbers = std::get_if<std::vector<double>>(&column.values))
+    return append_number(line, (*numbers)[row]);
   if (const auto* integers = std::get_if<std::vector<std::int64_t>>(&column.values)) {
     line += std::to_string((*integers)[row]);
     return;
@@ -78,7 +81,8 @@ class TextFile {
 void make_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw InputError(folder, "export", error.message(), "a folder that can be made");
+  if (!fs::is_directory(folder))
+    throw InputError(folder, "export", error.message(), "a folder that can be made");
 }
 
 std::string write_table(const Table& table, const fs::path& path) {
@@ -130,7 +134,8 @@ class Dictionary {
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), const std::string& file) : id_(id), close_(close) {
-    if (id_ < 0) throw InputError(file, "export", "an error of HDF5", "a folder that can be written, with space left");
+    if (id_ < 0)
+      throw InputError(file, "export", "an error of HDF5", "a folder that can be written, with space left");
   }
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
@@ -155,7 +160,8 @@ class Hdf5File {
   void attribute(const std::string& name, const std::string& value) { attribute(file_, name, value); }
 
   void write(const Table& table) {
-    const Handle group(H5Gcreate2(file_, table.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path_);
+    const Handle group(H5Gcreate2(file_, table.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose,
+                       path_);
     attribute(group, "description", table.meaning);
     attribute(group, "rate_hz", table.rate);
     for (const Column& column : table.columns) write(group, column);
@@ -170,15 +176,16 @@ class Hdf5File {
 
   void attribute(hid_t object, const std::string& name, const std::string& value) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose, path_);
-    const Handle made(H5Acreate2(object, name.c_str(), text_type_, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose, path_);
+    const Handle made(H5Acreate2(object, name.c_str(), text_type_, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                      path_);
     const char* text = value.c_str();
     check(H5Awrite(made, text_type_, &text));
   }
 
   void attribute(hid_t object, const std::string& name, double value) {
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose, path_);
-    const Handle made(H5Acreate2(object, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                      path_);
+    const Handle made(H5Acreate2(object, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT),
+                      H5Aclose, path_);
     check(H5Awrite(made, H5T_NATIVE_DOUBLE, &value));
   }
 
@@ -191,14 +198,16 @@ class Hdf5File {
       write(group, column, space, H5T_STD_I64LE, H5T_NATIVE_INT64, integers->data());
     } else {
       std::vector<const char*> texts;
-      for (const std::string& text : std::get<std::vector<std::string>>(column.values)) texts.push_back(text.c_str());
+      for (const std::string& text : std::get<std::vector<std::string>>(column.values))
+        texts.push_back(text.c_str());
       write(group, column, space, text_type_, text_type_, texts.data());
     }
   }
 
   void write(hid_t group, const Column& column, hid_t space, hid_t stored, hid_t native, const void* data) {
-    const Handle set(H5Dcreate2(group, column.name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Dclose, path_);
+    const Handle set(
+        H5Dcreate2(group, column.name.c_str(), stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose, path_);
     if (length(column) > 0) check(H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
     attribute(set, "unit", column.unit);
     attribute(set, "description", column.meaning);
@@ -215,7 +224,8 @@ std::vector<std::string> export_csv(const std::vector<Table>& tables, const Reco
                                     const std::string& folder) {
   make_folder(folder);
   std::vector<std::string> files;
-  for (const Table& table : tables) files.push_back(write_table(table, fs::path(folder) / (table.name + ".csv")));
+  for (const Table& table : tables)
+    files.push_back(write_table(table, fs::path(folder) / (table.name + ".csv")));
   Table about{"recording", 0.0, "the session", {}};
   const auto say = [&](const char* name, const char* unit, const char* meaning, const std::string& value) {
     about.columns.push_back({name, unit, meaning, std::vector<std::string>{value}});

@@ -39,7 +39,8 @@ Table inputs_table(const RecordingReader& recording) {
                 tool.has_grip_force ? tool.grip_force : kAbsent);
       table.add_integer(prefix + "buttons", "-", "bit set: 1 clutch, 2 cut, 4 next", tool.buttons);
     }
-    table.add_text("state_hash", "-", "XXH3-64 of the whole state after the step, hexadecimal", hex(record.state_hash));
+    table.add_text("state_hash", "-", "XXH3-64 of the whole state after the step, hexadecimal",
+                   hex(record.state_hash));
   }
   return table.take();
 }
@@ -113,8 +114,8 @@ Table score_table(const RecordingReader& recording) {
 }  // namespace
 
 std::vector<Table> recorded_tables(const RecordingReader& recording) {
-  return {inputs_table(recording), samples_table(recording), events_table(recording), array_hashes_table(recording),
-          score_table(recording)};
+  return {inputs_table(recording), samples_table(recording), events_table(recording),
+          array_hashes_table(recording), score_table(recording)};
 }
 
 }  // namespace filum

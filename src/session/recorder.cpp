@@ -30,10 +30,12 @@ std::string checked(const RecorderOptions& options) {
   const std::filesystem::path path(options.file);
   std::error_code error;
   if (std::filesystem::exists(path, error))
-    throw InputError(options.file, "recording", "a file that exists", "a new file: recordings are never overwritten");
+    throw InputError(options.file, "recording", "a file that exists",
+                     "a new file: recordings are never overwritten");
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder, error))
-    throw InputError(options.file, "recording", "no folder " + folder.string(), "a folder that can be written");
+    throw InputError(options.file, "recording", "no folder " + folder.string(),
+                     "a folder that can be written");
   return options.file;
 }
 
@@ -142,7 +144,8 @@ void Recorder::Impl::commit_what_came() {
     writer.commit({steps.pending, samples.pending, events.pending, array_hashes.pending, new_score});
   } catch (const std::exception& error) {
     const std::lock_guard lock(mutex);
-    trouble = "not stored, trying again: " + database::reason(error) + ". Free some space or choose another folder.";
+    trouble = "not stored, trying again: " + database::reason(error) +
+              ". Free some space or choose another folder.";
     if (!score) score.swap(new_score);
     return;
   }
@@ -173,12 +176,22 @@ Recorder::Recorder(RecorderOptions options) {
   impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
 }
 
-Recorder::~Recorder() { close(); }
+Recorder::~Recorder() {
+  close();
+}
 
-bool Recorder::record_step(const StepRecord& record) noexcept { return impl_->steps.push(record); }
-bool Recorder::record_event(const EventRecord& record) noexcept { return impl_->events.push(record); }
-bool Recorder::record_array_hash(const ArrayHashRecord& record) noexcept { return impl_->array_hashes.push(record); }
-bool Recorder::record_sample(const SampleRecord& record) noexcept { return impl_->samples.push(record); }
+bool Recorder::record_step(const StepRecord& record) noexcept {
+  return impl_->steps.push(record);
+}
+bool Recorder::record_event(const EventRecord& record) noexcept {
+  return impl_->events.push(record);
+}
+bool Recorder::record_array_hash(const ArrayHashRecord& record) noexcept {
+  return impl_->array_hashes.push(record);
+}
+bool Recorder::record_sample(const SampleRecord& record) noexcept {
+  return impl_->samples.push(record);
+}
 
 void Recorder::set_score(const ScoreRecord& score) {
   const std::lock_guard lock(impl_->mutex);
@@ -212,13 +225,16 @@ bool Recorder::close() {
     try {
       impl_->writer.finish();
     } catch (const std::exception& error) {
-      impl_->set_trouble("not closed properly: " + database::reason(error) + ". What was stored can still be read.");
+      impl_->set_trouble("not closed properly: " + database::reason(error) +
+                         ". What was stored can still be read.");
     }
   }
   return status().healthy;
 }
 
-const std::string& Recorder::file() const { return impl_->options.file; }
+const std::string& Recorder::file() const {
+  return impl_->options.file;
+}
 
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);

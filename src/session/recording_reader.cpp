@@ -58,7 +58,9 @@ class RecordingFile {
     }
   }
 
-  [[noreturn]] void damaged(const std::string& what) const { throw InputError(file, "recording", what, kSound); }
+  [[noreturn]] void damaged(const std::string& what) const {
+    throw InputError(file, "recording", what, kSound);
+  }
 
   /// The block after `id` of a table: false at the end. Blocks are numbered from 1 without a gap.
   bool next_block(const char* table, long long& id, std::size_t& count, std::vector<char>& bytes) {
@@ -95,7 +97,8 @@ class RecordingFile {
     try {
       connect(file);
     } catch (const std::exception&) {
-      // A crashed recording needs its journal played back; where the folder cannot be written that happens in a copy.
+      // A crashed recording needs its journal played back; where the folder cannot be written that happens in
+      // a copy.
       if (!fs::exists(file + "-wal")) throw;
       copy_ = std::make_unique<TemporaryFolder>();
       const fs::path copied = copy_->path() / "recording";
@@ -126,7 +129,8 @@ class RecordingFile {
     select.execute();
     bool has_meta = false;
     while (select.fetch()) {
-      if (static_cast<std::uint64_t>(hash) != hash_text(value)) damaged(kind + " " + name + " with a wrong checksum");
+      if (static_cast<std::uint64_t>(hash) != hash_text(value))
+        damaged(kind + " " + name + " with a wrong checksum");
       if (kind == "source") sources.push_back({name, value});
       if (kind == "score") read_score(value);
       if (kind == "meta" && name == "finished") finished = true;
@@ -166,12 +170,21 @@ class RecordingFile {
 
 namespace {
 
-const char* table_of(const StepRecord*) { return "steps"; }
-const char* table_of(const SampleRecord*) { return "samples"; }
-const char* table_of(const EventRecord*) { return "events"; }
-const char* table_of(const ArrayHashRecord*) { return "array_hashes"; }
+const char* table_of(const StepRecord*) {
+  return "steps";
+}
+const char* table_of(const SampleRecord*) {
+  return "samples";
+}
+const char* table_of(const EventRecord*) {
+  return "events";
+}
+const char* table_of(const ArrayHashRecord*) {
+  return "array_hashes";
+}
 
-bool unpack_block(std::span<const char> bytes, std::size_t count, int n_tools, std::vector<StepRecord>& records) {
+bool unpack_block(std::span<const char> bytes, std::size_t count, int n_tools,
+                  std::vector<StepRecord>& records) {
   return unpack(bytes, count, n_tools, records);
 }
 template <class Record>
@@ -202,29 +215,51 @@ template class RecordCursor<SampleRecord>;
 template class RecordCursor<EventRecord>;
 template class RecordCursor<ArrayHashRecord>;
 
-RecordingReader::RecordingReader(const std::string& file) : file_(std::make_shared<detail::RecordingFile>(file)) {}
+RecordingReader::RecordingReader(const std::string& file)
+    : file_(std::make_shared<detail::RecordingFile>(file)) {}
 
-const std::string& RecordingReader::file() const { return file_->file; }
-const RecordingMeta& RecordingReader::meta() const { return file_->meta; }
-bool RecordingReader::finished() const { return file_->finished; }
-const std::vector<SourceFile>& RecordingReader::sources() const { return file_->sources; }
-const std::optional<ScoreRecord>& RecordingReader::score() const { return file_->score; }
-RecordCursor<StepRecord> RecordingReader::steps() const { return RecordCursor<StepRecord>(file_); }
-RecordCursor<SampleRecord> RecordingReader::samples() const { return RecordCursor<SampleRecord>(file_); }
-RecordCursor<EventRecord> RecordingReader::events() const { return RecordCursor<EventRecord>(file_); }
-RecordCursor<ArrayHashRecord> RecordingReader::array_hashes() const { return RecordCursor<ArrayHashRecord>(file_); }
+const std::string& RecordingReader::file() const {
+  return file_->file;
+}
+const RecordingMeta& RecordingReader::meta() const {
+  return file_->meta;
+}
+bool RecordingReader::finished() const {
+  return file_->finished;
+}
+const std::vector<SourceFile>& RecordingReader::sources() const {
+  return file_->sources;
+}
+const std::optional<ScoreRecord>& RecordingReader::score() const {
+  return file_->score;
+}
+RecordCursor<StepRecord> RecordingReader::steps() const {
+  return RecordCursor<StepRecord>(file_);
+}
+RecordCursor<SampleRecord> RecordingReader::samples() const {
+  return RecordCursor<SampleRecord>(file_);
+}
+RecordCursor<EventRecord> RecordingReader::events() const {
+  return RecordCursor<EventRecord>(file_);
+}
+RecordCursor<ArrayHashRecord> RecordingReader::array_hashes() const {
+  return RecordCursor<ArrayHashRecord>(file_);
+}
 
 void RecordingReader::write_sources(const std::string& folder) const {
   for (const SourceFile& source : sources()) {
     const fs::path path(source.path);
-    const bool leaves = path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end() || path.empty();
-    if (leaves) throw InputError(file(), "source", "\"" + source.path + "\"", "a path below the project's root");
+    const bool leaves =
+        path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end() || path.empty();
+    if (leaves)
+      throw InputError(file(), "source", "\"" + source.path + "\"", "a path below the project's root");
     const fs::path target = fs::path(folder) / path;
     std::error_code error;
     fs::create_directories(target.parent_path(), error);
     std::ofstream stream(target, std::ios::binary);
     stream.write(source.text.data(), static_cast<std::streamsize>(source.text.size()));
-    if (!stream.flush()) throw InputError(target.string(), "source", "a write error", "a folder that can be written");
+    if (!stream.flush())
+      throw InputError(target.string(), "source", "a write error", "a folder that can be written");
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Reads a recording, finished or cut off by a crash. Every checksum is compared; whatever is wrong with the file becomes an
-// InputError that names it: not a recording, made by a newer program, cut short, damaged.
+// Reads a recording, finished or cut off by a crash. Every checksum is compared; whatever is wrong with the
+// file becomes an InputError that names it: not a recording, made by a newer program, cut short, damaged.
 
 #include <cstdint>
 #include <memory>
@@ -34,8 +34,8 @@ class RecordCursor {
 
 class RecordingReader {
  public:
-  /// Throws InputError when the file is no recording this program can read. Never writes beside a file in a folder that is
-  /// read-only: a crashed recording there is copied to a temporary folder first.
+  /// Throws InputError when the file is no recording this program can read. Never writes beside a file in a
+  /// folder that is read-only: a crashed recording there is copied to a temporary folder first.
   explicit RecordingReader(const std::string& file);
 
   const std::string& file() const;
@@ -59,8 +59,8 @@ class RecordingReader {
   std::shared_ptr<detail::RecordingFile> file_;
 };
 
-/// Every *.yaml file below root/models and root/curricula, by path: what a recording keeps so that it can be replayed after
-/// the files have changed.
+/// Every *.yaml file below root/models and root/curricula, by path: what a recording keeps so that it can be
+/// replayed after the files have changed.
 std::vector<SourceFile> read_sources(const std::string& root);
 
 }  // namespace filum

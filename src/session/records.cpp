@@ -188,9 +188,15 @@ bool unpack_all(std::span<const char> bytes, std::size_t count, std::vector<Reco
 void pack(std::span<const StepRecord> records, int n_tools, std::vector<char>& bytes) {
   pack_all(records, bytes, n_tools);
 }
-void pack(std::span<const SampleRecord> records, std::vector<char>& bytes) { pack_all(records, bytes); }
-void pack(std::span<const EventRecord> records, std::vector<char>& bytes) { pack_all(records, bytes); }
-void pack(std::span<const ArrayHashRecord> records, std::vector<char>& bytes) { pack_all(records, bytes); }
+void pack(std::span<const SampleRecord> records, std::vector<char>& bytes) {
+  pack_all(records, bytes);
+}
+void pack(std::span<const EventRecord> records, std::vector<char>& bytes) {
+  pack_all(records, bytes);
+}
+void pack(std::span<const ArrayHashRecord> records, std::vector<char>& bytes) {
+  pack_all(records, bytes);
+}
 
 bool unpack(std::span<const char> bytes, std::size_t count, int n_tools, std::vector<StepRecord>& records) {
   return unpack_all(bytes, count, records, n_tools);

@@ -1,6 +1,6 @@
 #pragma once
-// What a recording holds, as plain fixed-size values that can pass through a lock-free queue, and their packed form.
-// Doubles are stored bit for bit.
+// What a recording holds, as plain fixed-size values that can pass through a lock-free queue, and their
+// packed form. Doubles are stored bit for bit.
 
 #include <array>
 #include <cstdint>
@@ -29,14 +29,15 @@ struct FixedText {
 
 /// One call of World::step: what went in, and the hash of the state that came out.
 struct StepRecord {
-  std::uint64_t step = 0;          // Observation::step after the call; each recording counts up by one without a gap
-  std::int64_t host_time_us = 0;   // [us], host steady clock when the step began
-  std::uint32_t compute_us = 0;    // [us], how long it took
+  std::uint64_t step = 0;  // Observation::step after the call; each recording counts up by one without a gap
+  std::int64_t host_time_us = 0;  // [us], host steady clock when the step began
+  std::uint32_t compute_us = 0;   // [us], how long it took
   std::uint64_t state_hash = 0;
   Inputs inputs;
 };
 
-/// One raw reading of a device, field for field what devices/device.h reports (the session may not include it).
+/// One raw reading of a device, field for field what devices/device.h reports (the session may not include
+/// it).
 struct SampleRecord {
   int tool = 0;
   std::int64_t host_time_us = 0;    // [us], host steady clock when the reading arrived
@@ -46,25 +47,27 @@ struct SampleRecord {
   bool has_grip_angle = false;
   bool has_grip_force = false;
   Pose X_WD;
-  double grip_angle = 0.0;          // [rad]
-  double grip_force = 0.0;          // [N]
-  std::int32_t raw_angle = 0;       // [count]
-  std::int32_t raw_force = 0;       // [count]
+  double grip_angle = 0.0;     // [rad]
+  double grip_force = 0.0;     // [N]
+  std::int32_t raw_angle = 0;  // [count]
+  std::int32_t raw_force = 0;  // [count]
   std::uint32_t buttons = 0;
 };
 
-/// Something that happened: in the world ("grasp"), in the task ("throw laid"), to a device ("input-lost"), to the clock
+/// Something that happened: in the world ("grasp"), in the task ("throw laid"), to a device ("input-lost"),
+/// to the clock
 /// ("overrun") or to the recording itself ("recording-lost").
 struct EventRecord {
   std::uint64_t step = 0;
-  double time = 0.0;               // [s], scene time
+  double time = 0.0;  // [s], scene time
   FixedText<40> name;
-  int tool = -1;                   // -1 none
-  double value = 0.0;              // in `unit`
+  int tool = -1;       // -1 none
+  double value = 0.0;  // in `unit`
   FixedText<16> unit = "-";
 };
 
-/// Hash of one array of the state, taken every so many steps so that a replay can name the first array that differs.
+/// Hash of one array of the state, taken every so many steps so that a replay can name the first array that
+/// differs.
 struct ArrayHashRecord {
   std::uint64_t step = 0;
   FixedText<40> name;
@@ -79,25 +82,26 @@ struct SourceFile {
 
 /// Said once about a recording.
 struct RecordingMeta {
-  int format = 0;               // of the file; set by the program
-  std::string program;          // version and build: bit-equal replay is promised for the same build only
-  std::string task;             // "knot-square"
-  std::string participant;      // code [A-Za-z0-9_-]{1,32} or empty; never a name
-  std::string started_utc;      // "2026-11-21T09:30:00Z"
-  std::string input;            // "serial /dev/ttyACM0", "demonstrator", ...
-  double dt = 0.0;              // [s], of a step
-  int n_tools = 0;              // 0 ... 3; inputs of further tools are not stored
+  int format = 0;           // of the file; set by the program
+  std::string program;      // version and build: bit-equal replay is promised for the same build only
+  std::string task;         // "knot-square"
+  std::string participant;  // code [A-Za-z0-9_-]{1,32} or empty; never a name
+  std::string started_utc;  // "2026-11-21T09:30:00Z"
+  std::string input;        // "serial /dev/ttyACM0", "demonstrator", ...
+  double dt = 0.0;          // [s], of a step
+  int n_tools = 0;          // 0 ... 3; inputs of further tools are not stored
 };
 
 /// Result of the task as the training rules gave it; json is stored as it is.
 struct ScoreRecord {
   bool passed = false;
-  double total = 0.0;           // [points]
-  double seconds = 0.0;         // [s], scene time of the task
+  double total = 0.0;    // [points]
+  double seconds = 0.0;  // [s], scene time of the task
   std::string json;
 };
 
-// Packed form: little-endian, no padding. unpack() returns false when the bytes are not exactly `count` records.
+// Packed form: little-endian, no padding. unpack() returns false when the bytes are not exactly `count`
+// records.
 void pack(std::span<const StepRecord> records, int n_tools, std::vector<char>& bytes);
 void pack(std::span<const SampleRecord> records, std::vector<char>& bytes);
 void pack(std::span<const EventRecord> records, std::vector<char>& bytes);

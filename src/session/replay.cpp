@@ -7,12 +7,14 @@
 namespace filum {
 namespace {
 
-/// Reads array hashes in step with the replay and finds the first array that differs at the steps where they were taken.
+/// Reads array hashes in step with the replay and finds the first array that differs at the steps where they
+/// were taken.
 class ArrayCheck {
  public:
   explicit ArrayCheck(const RecordingReader& recording) : cursor_(recording.array_hashes()) { advance(); }
 
-  /// Name of the first array of `world` that differs at `step`; empty when none does; nothing when none was recorded there.
+  /// Name of the first array of `world` that differs at `step`; empty when none does; nothing when none was
+  /// recorded there.
   std::optional<std::string> first_difference(std::uint64_t step, const World& world) {
     while (more_ && next_.step < step) advance();
     if (!more_ || next_.step != step) return std::nullopt;
@@ -21,7 +23,8 @@ class ArrayCheck {
     for (; more_ && next_.step == step; advance()) {
       if (!differing.empty()) continue;
       bool same = false;
-      for (const auto& [name, hash] : hashes) same = same || (name == next_.name.view() && hash == next_.hash);
+      for (const auto& [name, hash] : hashes)
+        same = same || (name == next_.name.view() && hash == next_.hash);
       if (!same) differing = next_.name.view();
     }
     return differing;
@@ -34,12 +37,14 @@ class ArrayCheck {
   bool more_ = false;
 };
 
-constexpr int kStepsToNameArray = 1000;  // array hashes are taken every so many steps; beyond this there are none
+constexpr int kStepsToNameArray =
+    1000;  // array hashes are taken every so many steps; beyond this there are none
 
 }  // namespace
 
 ReplayResult replay(const RecordingReader& recording, World& world,
-                    const std::function<void(const StepRecord&, const Observation&)>& on_step, bool to_the_end) {
+                    const std::function<void(const StepRecord&, const Observation&)>& on_step,
+                    bool to_the_end) {
   ReplayResult result;
   ArrayCheck arrays(recording);
   RecordCursor<StepRecord> steps = recording.steps();

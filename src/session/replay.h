@@ -13,7 +13,8 @@ namespace filum {
 
 struct ReplayDifference {
   std::uint64_t step = 0;
-  std::string array;  // the first array of the state that differs, as far as the recording tells; else "state"
+  std::string
+      array;  // the first array of the state that differs, as far as the recording tells; else "state"
 };
 
 struct ReplayResult {
@@ -22,9 +23,9 @@ struct ReplayResult {
   std::optional<ReplayDifference> first_difference;
 };
 
-/// `world` is fresh from load_model on the recording's sources. `on_step` sees every step as it is replayed (scores, exports,
-/// the scrubber). Stops at the first difference unless `to_the_end`. Throws InputError if the recording is damaged or has a
-/// gap in its steps.
+/// `world` is fresh from load_model on the recording's sources. `on_step` sees every step as it is replayed
+/// (scores, exports, the scrubber). Stops at the first difference unless `to_the_end`. Throws InputError if
+/// the recording is damaged or has a gap in its steps.
 ReplayResult replay(const RecordingReader& recording, World& world,
                     const std::function<void(const StepRecord&, const Observation&)>& on_step = {},
                     bool to_the_end = false);

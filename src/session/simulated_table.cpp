@@ -10,7 +10,8 @@ namespace {
 
 double largest_tension(const Observation& seen) {
   double largest = 0.0;
-  for (int i = 0; i + 1 < seen.n_nodes; ++i) largest = std::max(largest, seen.tension[static_cast<std::size_t>(i)]);
+  for (int i = 0; i + 1 < seen.n_nodes; ++i)
+    largest = std::max(largest, seen.tension[static_cast<std::size_t>(i)]);
   return largest;
 }
 
@@ -28,7 +29,8 @@ void add_simulated_row(TableBuilder& table, const Observation& seen) {
     table.add(prefix + "grip_angle", "rad", "simulated opening of the jaws", tool.grip_angle);
     table.add(prefix + "grip_force", "N", "squeeze at the pads", tool.grip_force);
     table.add(prefix + "thread_force", "N", "pull of the thread on the jaws", tool.thread_force);
-    table.add_integer(prefix + "grasped_edge", "-", "edge of the thread in the jaws, -1 none", tool.grasped_edge);
+    table.add_integer(prefix + "grasped_edge", "-", "edge of the thread in the jaws, -1 none",
+                      tool.grasped_edge);
   }
   table.add("thread_tension_max", "N", "largest tension along the thread", largest_tension(seen));
   table.add_integer("contacts", "count", "places where the thread touches itself", seen.n_contacts);
@@ -40,7 +42,9 @@ void add_simulated_row(TableBuilder& table, const Observation& seen) {
 Table simulated_table(const RecordingReader& recording, World& world) {
   TableBuilder table("simulated", step_rate(recording.meta()),
                      "what the simulation answered, from stepping it again through the inputs");
-  replay(recording, world, [&](const StepRecord&, const Observation& seen) { add_simulated_row(table, seen); }, true);
+  replay(
+      recording, world, [&](const StepRecord&, const Observation& seen) { add_simulated_row(table, seen); },
+      true);
   return table.take();
 }
 

@@ -16,9 +16,12 @@ namespace filum {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kColumns = "id, task, participant, started_utc, seconds, finished, scored, passed, total";
+constexpr const char* kColumns =
+    "id, task, participant, started_utc, seconds, finished, scored, passed, total";
 
-fs::path index_path(const std::string& folder) { return fs::path(folder) / "index.sqlite"; }
+fs::path index_path(const std::string& folder) {
+  return fs::path(folder) / "index.sqlite";
+}
 
 /// "2026-11-21T09:30:00Z" -> "20261121T093000Z"
 std::string compact(const std::string& utc) {
@@ -106,8 +109,10 @@ struct Store::Impl {
     int rows = 0;
     *sql << "SELECT count(*) FROM filum_store", soci::into(rows);
     if (rows == 0) *sql << "INSERT INTO filum_store (format) VALUES (" << kStoreFormat << ")";
-    *sql << "CREATE TABLE IF NOT EXISTS filum_sessions (id VARCHAR(200) PRIMARY KEY, task VARCHAR(100) NOT NULL, "
-            "participant VARCHAR(32) NOT NULL, started_utc VARCHAR(32) NOT NULL, seconds DOUBLE PRECISION NOT NULL, "
+    *sql << "CREATE TABLE IF NOT EXISTS filum_sessions (id VARCHAR(200) PRIMARY KEY, task VARCHAR(100) NOT "
+            "NULL, "
+            "participant VARCHAR(32) NOT NULL, started_utc VARCHAR(32) NOT NULL, seconds DOUBLE PRECISION "
+            "NOT NULL, "
             "finished INTEGER NOT NULL, scored INTEGER NOT NULL, passed INTEGER NOT NULL, "
             "total DOUBLE PRECISION NOT NULL)";
   }
@@ -149,7 +154,8 @@ struct Store::Impl {
                       << " ORDER BY started_utc DESC, id DESC",
          soci::use(a, "a"), soci::use(b, "b"), soci::into(row.entry.id), soci::into(row.entry.task),
          soci::into(row.entry.participant), soci::into(row.entry.started_utc), soci::into(row.entry.seconds),
-         soci::into(row.finished), soci::into(row.scored), soci::into(row.passed), soci::into(row.entry.total));
+         soci::into(row.finished), soci::into(row.scored), soci::into(row.passed),
+         soci::into(row.entry.total));
     query.execute();
     while (query.fetch()) entries.push_back(row.filled());
     return entries;
@@ -166,7 +172,8 @@ struct Store::Impl {
   }
 };
 
-Store::Store(const std::string& folder, const std::string& index_connection) : impl_(std::make_unique<Impl>()) {
+Store::Store(const std::string& folder, const std::string& index_connection)
+    : impl_(std::make_unique<Impl>()) {
   impl_->folder = folder;
   impl_->own_index = index_connection.empty();
   std::error_code error;
@@ -197,14 +204,16 @@ Store::Store(const std::string& folder, const std::string& index_connection) : i
   fs::rename(index_path(folder), aside, error);
   impl_->guarded([&] { impl_->open_own_index(); });
   impl_->found_on_opening = rebuild();
-  impl_->found_on_opening.push_back(
-      {"index", "was damaged; set aside as " + aside, "nothing to do: it was built anew from the recordings"});
+  impl_->found_on_opening.push_back({"index", "was damaged; set aside as " + aside,
+                                     "nothing to do: it was built anew from the recordings"});
 }
 
 Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 
-const std::string& Store::folder() const { return impl_->folder; }
+const std::string& Store::folder() const {
+  return impl_->folder;
+}
 
 std::string Store::file_of(const std::string& id) const {
   return (fs::path(impl_->folder) / (id + kRecordingSuffix)).string();
@@ -221,7 +230,8 @@ StoreEntry Store::begin(const std::string& task, const std::string& participant)
   const std::string base =
       compact(entry.started_utc) + "-" + word(task) + (participant.empty() ? "" : "-" + participant);
   entry.id = base;
-  for (int n = 2; fs::exists(file_of(entry.id)) || find(entry.id); ++n) entry.id = base + "-" + std::to_string(n);
+  for (int n = 2; fs::exists(file_of(entry.id)) || find(entry.id); ++n)
+    entry.id = base + "-" + std::to_string(n);
   impl_->guarded([&] { impl_->put(entry); });
   return entry;
 }
@@ -232,8 +242,9 @@ void Store::finish(const std::string& id, const std::optional<ScoreRecord>& scor
   const double total = score ? score->total : 0.0;
   const double seconds = score ? score->seconds : 0.0;
   impl_->guarded([&] {
-    *impl_->sql << "UPDATE filum_sessions SET finished = 1, scored = :s, passed = :p, total = :t, seconds = :sec "
-                   "WHERE id = :id",
+    *impl_->sql
+        << "UPDATE filum_sessions SET finished = 1, scored = :s, passed = :p, total = :t, seconds = :sec "
+           "WHERE id = :id",
         soci::use(scored), soci::use(passed), soci::use(total), soci::use(seconds), soci::use(id);
   });
 }
@@ -265,7 +276,8 @@ std::vector<StoreProblem> Store::rebuild() {
       if (!entry.scored) entry.seconds = static_cast<double>(steps) * recording.meta().dt;
       entries.push_back(entry);
     } catch (const InputError& error) {
-      problems.push_back({id, error.what(), "keep the file: what stands before the damage may be read by hand"});
+      problems.push_back(
+          {id, error.what(), "keep the file: what stands before the damage may be read by hand"});
     }
   }
   impl_->guarded([&] {
@@ -286,12 +298,14 @@ std::vector<StoreProblem> Store::check(bool deep) const {
       const RecordingReader recording(file_of(id));
       if (deep) read_everything(recording);
     } catch (const InputError& error) {
-      problems.push_back({id, error.what(), "keep the file: what stands before the damage may be read by hand"});
+      problems.push_back(
+          {id, error.what(), "keep the file: what stands before the damage may be read by hand"});
     }
   }
   for (const StoreEntry& entry : list())
     if (!std::binary_search(ids.begin(), ids.end(), entry.id))
-      problems.push_back({entry.id, "is in the index but its file is gone", "restore the file or rebuild the index"});
+      problems.push_back(
+          {entry.id, "is in the index but its file is gone", "restore the file or rebuild the index"});
   return problems;
 }
 

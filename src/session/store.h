@@ -1,6 +1,7 @@
 #pragma once
-// A folder of recordings with an index. The index is a convenience that can be rebuilt from the recordings at any time; by
-// default it is an SQLite file in the folder, another SOCI connection string may be given. Participants are codes, never names.
+// A folder of recordings with an index. The index is a convenience that can be rebuilt from the recordings at
+// any time; by default it is an SQLite file in the folder, another SOCI connection string may be given.
+// Participants are codes, never names.
 
 #include <memory>
 #include <optional>
@@ -15,27 +16,27 @@ inline constexpr int kStoreFormat = 1;
 inline constexpr const char* kRecordingSuffix = ".filum-session";
 
 struct StoreEntry {
-  std::string id;            // also the file's name without suffix
+  std::string id;  // also the file's name without suffix
   std::string task;
-  std::string participant;   // code or empty
+  std::string participant;  // code or empty
   std::string started_utc;
-  double seconds = 0.0;      // [s], of the task
-  bool finished = false;     // closed properly
+  double seconds = 0.0;   // [s], of the task
+  bool finished = false;  // closed properly
   bool scored = false;
   bool passed = false;
-  double total = 0.0;        // [points]
+  double total = 0.0;  // [points]
 };
 
 struct StoreProblem {
-  std::string id;            // recording or "index"
+  std::string id;  // recording or "index"
   std::string what;
   std::string advice;
 };
 
 class Store {
  public:
-  /// Opens or creates. A damaged index is set aside, built anew from the recordings, and reported by check(). Throws
-  /// InputError when the folder cannot be made or written or the index was made by a newer program.
+  /// Opens or creates. A damaged index is set aside, built anew from the recordings, and reported by check().
+  /// Throws InputError when the folder cannot be made or written or the index was made by a newer program.
   /// Not thread-safe: one thread owns a Store.
   explicit Store(const std::string& folder, const std::string& index_connection = "");
   ~Store();
@@ -53,7 +54,8 @@ class Store {
   std::optional<StoreEntry> find(const std::string& id) const;
   std::string file_of(const std::string& id) const;
 
-  /// Reads every recording in the folder and writes the index anew. Damaged files are left alone and reported.
+  /// Reads every recording in the folder and writes the index anew. Damaged files are left alone and
+  /// reported.
   std::vector<StoreProblem> rebuild();
   /// Compares folder and index without changing either; `deep` also reads every block of every recording.
   std::vector<StoreProblem> check(bool deep) const;
@@ -63,7 +65,8 @@ class Store {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Where recordings go unless told otherwise: $FILUM_STORE, else $XDG_DATA_HOME/filum, else ~/.local/share/filum.
+/// Where recordings go unless told otherwise: $FILUM_STORE, else $XDG_DATA_HOME/filum, else
+/// ~/.local/share/filum.
 std::string default_store_folder();
 
 }  // namespace filum

@@ -10,7 +10,8 @@
 
 namespace filum {
 
-/// Builds a table column by column in the order of the first row; add(name...) appends one cell of the current row.
+/// Builds a table column by column in the order of the first row; add(name...) appends one cell of the
+/// current row.
 class TableBuilder {
  public:
   TableBuilder(std::string name, double rate, std::string meaning) {
@@ -22,7 +23,8 @@ class TableBuilder {
   void add(const std::string& name, const char* unit, const std::string& meaning, double value) {
     column<std::vector<double>>(name, unit, meaning).push_back(value);
   }
-  void add_integer(const std::string& name, const char* unit, const std::string& meaning, std::int64_t value) {
+  void add_integer(const std::string& name, const char* unit, const std::string& meaning,
+                   std::int64_t value) {
     column<std::vector<std::int64_t>>(name, unit, meaning).push_back(value);
   }
   void add_text(const std::string& name, const char* unit, const std::string& meaning, std::string value) {
@@ -52,6 +54,8 @@ class TableBuilder {
 };
 
 /// [Hz], of the tables with one row a step.
-inline double step_rate(const RecordingMeta& meta) { return meta.dt > 0.0 ? 1.0 / meta.dt : 0.0; }
+inline double step_rate(const RecordingMeta& meta) {
+  return meta.dt > 0.0 ? 1.0 / meta.dt : 0.0;
+}
 
 }  // namespace filum

@@ -10,7 +10,8 @@ TEST(Ensure, PassesAndEvaluatesOnce) {
 
 TEST(EnsureDeathTest, StopsWithPlaceConditionAndReason) {
   const int nodes = 3;
-  EXPECT_DEATH(ENSURE(nodes > 4, "a rod needs five nodes"), "ensure_test.cpp.*nodes > 4.*a rod needs five nodes");
+  EXPECT_DEATH(ENSURE(nodes > 4, "a rod needs five nodes"),
+               "ensure_test.cpp.*nodes > 4.*a rod needs five nodes");
 }
 
 TEST(EnsureDeathTest, AssertStopsInDebugOnly) {

@@ -27,7 +27,8 @@ TEST(Hash, EveryBitCounts) {
 TEST(Hash, ChainsBySeed) {
   const std::array<int, 2> a{1, 2};
   const std::array<int, 2> b{3, 4};
-  EXPECT_NE(hash_array(std::span(b), hash_array(std::span(a))), hash_array(std::span(a), hash_array(std::span(b))));
+  EXPECT_NE(hash_array(std::span(b), hash_array(std::span(a))),
+            hash_array(std::span(a), hash_array(std::span(b))));
 }
 
 TEST(Hash, TellsMinusZeroFromZero) {

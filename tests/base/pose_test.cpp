@@ -10,7 +10,9 @@
 namespace filum {
 namespace {
 
-Pose random_pose(Rng& rng) { return {rng.direction() * rng.uniform(0.0, 0.1), rng.rotation()}; }
+Pose random_pose(Rng& rng) {
+  return {rng.direction() * rng.uniform(0.0, 0.1), rng.rotation()};
+}
 
 TEST(Pose, MapsPointsByRotationThenTranslation) {
   const Pose X_WT{Vec3(1, 2, 3), Quat(Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitZ()))};

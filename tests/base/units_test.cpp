@@ -24,18 +24,19 @@ TEST_P(Parse, GivesSi) {
 
 INSTANTIATE_TEST_SUITE_P(
     Units, Parse,
-    testing::Values(Case{"0.35 mm", "m", 0.35e-3}, Case{"25 um", "mm", 25e-6}, Case{"25 \xC2\xB5m", "mm", 25e-6},
-                    Case{"2.5 GPa", "Pa", 2.5e9}, Case{"1140 kg/m3", "kg/m3", 1140}, Case{"1.14 g/cm^3", "kg/m3", 1140},
-                    Case{"0.2", "-", 0.2}, Case{"0.2 -", "-", 0.2}, Case{"50 %", "-", 0.5},
-                    Case{"30 deg", "rad", std::acos(-1.0) / 6}, Case{"4.79e-11 N.m2", "N.m2", 4.79e-11},
-                    Case{"4.79e-5 N*mm^2", "N.m2", 4.79e-11}, Case{"12 mmHg", "Pa", 12 * 133.322387415},
-                    Case{"10 cmH2O", "Pa", 980.665}, Case{"1 kgf", "N", 9.80665}, Case{"100 gf", "N", 0.980665},
-                    Case{"37 degC", "K", 310.15}, Case{"2 min", "s", 120}, Case{"1.5 h", "s", 5400},
-                    Case{"512 count", "count", 512}, Case{"60 1/min", "Hz", 1}, Case{"9.81 m.s-2", "m/s2", 9.81},
-                    Case{"3.5 kJ/(kg.K)", "J/kg/K", 3500}, Case{"-5 mN", "N", -5e-3}, Case{"+5mN", "N", 5e-3},
-                    Case{"2 ml/min", "m3/s", 2e-6 / 60}, Case{"10 kV", "V", 1e4}, Case{"4.7 kohm", "ohm", 4700},
-                    Case{"100 nF", "F", 1e-7}, Case{"1 Pa.s", "N.s/m2", 1}, Case{"3 daN", "N", 30},
-                    Case{"1 N\xC2\xB7m\xC2\xB2", "N.m2", 1}, Case{"1 kat", "mol/s", 1}, Case{"2 lm/sr", "cd", 2}));
+    testing::Values(
+        Case{"0.35 mm", "m", 0.35e-3}, Case{"25 um", "mm", 25e-6}, Case{"25 \xC2\xB5m", "mm", 25e-6},
+        Case{"2.5 GPa", "Pa", 2.5e9}, Case{"1140 kg/m3", "kg/m3", 1140}, Case{"1.14 g/cm^3", "kg/m3", 1140},
+        Case{"0.2", "-", 0.2}, Case{"0.2 -", "-", 0.2}, Case{"50 %", "-", 0.5},
+        Case{"30 deg", "rad", std::acos(-1.0) / 6}, Case{"4.79e-11 N.m2", "N.m2", 4.79e-11},
+        Case{"4.79e-5 N*mm^2", "N.m2", 4.79e-11}, Case{"12 mmHg", "Pa", 12 * 133.322387415},
+        Case{"10 cmH2O", "Pa", 980.665}, Case{"1 kgf", "N", 9.80665}, Case{"100 gf", "N", 0.980665},
+        Case{"37 degC", "K", 310.15}, Case{"2 min", "s", 120}, Case{"1.5 h", "s", 5400},
+        Case{"512 count", "count", 512}, Case{"60 1/min", "Hz", 1}, Case{"9.81 m.s-2", "m/s2", 9.81},
+        Case{"3.5 kJ/(kg.K)", "J/kg/K", 3500}, Case{"-5 mN", "N", -5e-3}, Case{"+5mN", "N", 5e-3},
+        Case{"2 ml/min", "m3/s", 2e-6 / 60}, Case{"10 kV", "V", 1e4}, Case{"4.7 kohm", "ohm", 4700},
+        Case{"100 nF", "F", 1e-7}, Case{"1 Pa.s", "N.s/m2", 1}, Case{"3 daN", "N", 30},
+        Case{"1 N\xC2\xB7m\xC2\xB2", "N.m2", 1}, Case{"1 kat", "mol/s", 1}, Case{"2 lm/sr", "cd", 2}));
 
 TEST(Units, PrefixedDecimalsAreTheDoubleOneWouldWrite) {
   EXPECT_EQ(parse_quantity("25 um", "m"), 25e-6);
@@ -60,16 +61,16 @@ TEST_P(Refuse, WithTextAndWhatWasExpected) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Units, Refuse,
-                         testing::Values(Case{"25", "mm", 0}, Case{"25 furlong", "mm", 0}, Case{"25 kg", "mm", 0},
-                                         Case{"mm", "mm", 0}, Case{"", "mm", 0}, Case{"nan mm", "mm", 0},
-                                         Case{"inf mm", "mm", 0}, Case{"1e400 mm", "mm", 0}, Case{"1e308 km", "mm", 0},
-                                         Case{"25 mm mm", "mm", 0}, Case{"25 mm/", "mm", 0}, Case{"25 .mm", "mm", 0},
-                                         Case{"25 (mm", "mm", 0}, Case{"25 mm)", "mm", 0}, Case{"25 m^", "mm", 0},
-                                         Case{"25 m99999999999", "mm", 0}, Case{"25 mmin", "s", 0},
-                                         Case{"0,35 mm", "mm", 0}, Case{"0x10 mm", "mm", 0}, Case{"30", "deg", 0},
-                                         Case{"30 deg", "-", 0}, Case{"5 count", "-", 0}, Case{"5 mdegC", "K", 0},
-                                         Case{"5 J/(kg.degC)", "J/kg/K", 0}));
+INSTANTIATE_TEST_SUITE_P(
+    Units, Refuse,
+    testing::Values(Case{"25", "mm", 0}, Case{"25 furlong", "mm", 0}, Case{"25 kg", "mm", 0},
+                    Case{"mm", "mm", 0}, Case{"", "mm", 0}, Case{"nan mm", "mm", 0}, Case{"inf mm", "mm", 0},
+                    Case{"1e400 mm", "mm", 0}, Case{"1e308 km", "mm", 0}, Case{"25 mm mm", "mm", 0},
+                    Case{"25 mm/", "mm", 0}, Case{"25 .mm", "mm", 0}, Case{"25 (mm", "mm", 0},
+                    Case{"25 mm)", "mm", 0}, Case{"25 m^", "mm", 0}, Case{"25 m99999999999", "mm", 0},
+                    Case{"25 mmin", "s", 0}, Case{"0,35 mm", "mm", 0}, Case{"0x10 mm", "mm", 0},
+                    Case{"30", "deg", 0}, Case{"30 deg", "-", 0}, Case{"5 count", "-", 0},
+                    Case{"5 mdegC", "K", 0}, Case{"5 J/(kg.degC)", "J/kg/K", 0}));
 
 TEST(Units, RefusesVeryLongTextsAndDeepBrackets) {
   EXPECT_THROW(parse_quantity("1 " + std::string(100000, '('), "m"), InputError);

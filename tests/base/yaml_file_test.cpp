@@ -25,7 +25,9 @@ tools:
   - {name: right, mass: 13 g}
 )";
 
-YamlNode model() { return YamlNode::parse(kModel, "model.yaml"); }
+YamlNode model() {
+  return YamlNode::parse(kModel, "model.yaml");
+}
 
 void read_everything(const YamlNode& node) {
   EXPECT_EQ(node.text("name"), "10-0-nylon");

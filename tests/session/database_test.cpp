@@ -31,7 +31,8 @@ TEST(Database, PathsWithBlanksOpenAndQuotationMarksAreRefused) {
 
 TEST(Database, ReadOnlyConnectionsDoNotCreateNorWrite) {
   const Folder folder;
-  EXPECT_THROW(soci::session(soci::sqlite3, database::connection_string(folder.file("none"), true)), soci::soci_error);
+  EXPECT_THROW(soci::session(soci::sqlite3, database::connection_string(folder.file("none"), true)),
+               soci::soci_error);
   EXPECT_FALSE(std::filesystem::exists(folder.file("none")));
 }
 
@@ -69,7 +70,8 @@ TEST(Database, RequireFormatTellsWhatIsWrong) {
 TEST(Database, BlobsCarryAnyBytes) {
   soci::session sql(soci::sqlite3, database::connection_string(":memory:", false));
   sql << "CREATE TABLE t (data BLOB)";
-  for (const std::vector<char>& bytes : {std::vector<char>{'a', '\0', '\xFF'}, std::vector<char>(100000, '\x01')}) {
+  for (const std::vector<char>& bytes :
+       {std::vector<char>{'a', '\0', '\xFF'}, std::vector<char>(100000, '\x01')}) {
     soci::blob in(sql);
     database::set_bytes(in, bytes);
     sql << "DELETE FROM t";

@@ -49,9 +49,12 @@ Cells read_csv(const std::string& file) {
 }
 
 std::vector<Table> odd_tables() {
-  return {{"odd", 500.0, "cells that need care",
+  return {{"odd",
+           500.0,
+           "cells that need care",
            {{"number", "N", "a number", std::vector<double>{0.1, std::nan(""), -1e-300}},
-            {"whole", "count", "an integer", std::vector<std::int64_t>{std::numeric_limits<std::int64_t>::min(), 0, 7}},
+            {"whole", "count", "an integer",
+             std::vector<std::int64_t>{std::numeric_limits<std::int64_t>::min(), 0, 7}},
             {"text", "-", "a, \"meaning\"", std::vector<std::string>{"a,b", "say \"x\"", "two\r\nlines"}}}},
           {"empty", 0.0, "no rows", {{"x", "m", "nothing", std::vector<double>{}}}}};
 }

@@ -1,11 +1,10 @@
-#include "session/export.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
 #include "base/units.h"
+#include "session/export.h"
 #include "tests/session/synthetic.h"
 
 namespace filum {

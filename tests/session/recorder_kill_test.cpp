@@ -1,5 +1,5 @@
-// A process that records at 500 Hz is killed at a random moment, fifty times. All it had recorded up to 100 ms before must be
-// there, in order and bit for bit.
+// A process that records at 500 Hz is killed at a random moment, fifty times. All it had recorded up to 100
+// ms before must be there, in order and bit for bit.
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -102,7 +102,8 @@ TEST(RecorderKill, AllButTheLastHundredMillisecondsSurviveFiftyKills) {
     const long stored = count_good_steps(recording);
     ASSERT_GE(stored, 0) << "a step differs";
     const std::uint64_t next = static_cast<std::uint64_t>(stored) + 1;
-    if (next <= progress->pushed.load()) worst_us = std::max(worst_us, killed_at - progress->pushed_at_us[next].load());
+    if (next <= progress->pushed.load())
+      worst_us = std::max(worst_us, killed_at - progress->pushed_at_us[next].load());
     std::uint64_t due = progress->pushed.load();
     while (due > 0 && killed_at - progress->pushed_at_us[due].load() < 100000) --due;
     EXPECT_GE(static_cast<std::uint64_t>(stored), due) << "kill " << kill_number;

@@ -109,7 +109,8 @@ TEST(Recorder, AFullQueueIsCountedAndRecorded) {
   EXPECT_EQ(event.unit.view(), "steps");
 }
 
-/// Files of this process may not grow past `bytes` while in scope: what a full disk does to a database, without a disk.
+/// Files of this process may not grow past `bytes` while in scope: what a full disk does to a database,
+/// without a disk.
 class DiskLimit {
  public:
   explicit DiskLimit(rlim_t bytes) {

@@ -1,11 +1,11 @@
 // Any bytes in place of a recording either read as one or give an InputError.
 
-#include <fcntl.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 
 #include "base/error.h"
@@ -13,11 +13,23 @@
 
 namespace {
 
-/// A file in memory with a path of its own.
+std::string path_to_remove;
+
+/// A file with these bytes; SQLite wants a real path, so it lies in memory only where /dev/shm is there.
 std::string path_with(const std::uint8_t* data, std::size_t size) {
-  static const int file = memfd_create("recording", 0);
-  if (file < 0 || ftruncate(file, 0) != 0 || pwrite(file, data, size, 0) != static_cast<ssize_t>(size)) std::abort();
-  return "/proc/self/fd/" + std::to_string(file);
+  static const std::string path = [] {
+    std::string name =
+        std::string(::access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp") + "/filum-fuzz-XXXXXX";
+    if (::close(::mkstemp(name.data())) != 0) std::abort();
+    std::atexit([] {
+      for (const char* suffix : {"", "-wal", "-shm"}) std::remove((path_to_remove + suffix).c_str());
+    });
+    path_to_remove = name;
+    return name;
+  }();
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  return path;
 }
 
 template <class Cursor, class Record>

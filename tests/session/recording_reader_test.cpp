@@ -96,8 +96,9 @@ TEST(RecordingReader, SaysWhenAFileIsFromANewerProgram) {
     RecordingReader recording(folder.file("a"));
     FAIL() << "a newer format was taken";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("format: found 3, made by a newer Filum, expected a format up to 1"),
-              std::string::npos)
+    EXPECT_NE(
+        std::string(error.what()).find("format: found 3, made by a newer Filum, expected a format up to 1"),
+        std::string::npos)
         << error.what();
   }
 }
@@ -125,7 +126,8 @@ TEST(RecordingReader, AFlippedBitIsFoundOrDoesNotMatter) {
     changed[at] = static_cast<char>(changed[at] ^ (1 << rng.below(8)));
     write_bytes(folder.file("flipped"), changed);
     try {
-      EXPECT_EQ(read_whole(folder.file("flipped")), right) << "byte " << at << " changed the content unnoticed";
+      EXPECT_EQ(read_whole(folder.file("flipped")), right)
+          << "byte " << at << " changed the content unnoticed";
     } catch (const InputError&) {
       ++found;
     }

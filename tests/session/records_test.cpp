@@ -82,7 +82,8 @@ TEST(Records, FixedTextCutsAndCompares) {
 }
 
 TEST(Records, ParticipantsAreCodes) {
-  for (const char* good : {"A17", "a_b-3", "x", "12345678901234567890123456789012"}) EXPECT_TRUE(is_participant_code(good));
+  for (const char* good : {"A17", "a_b-3", "x", "12345678901234567890123456789012"})
+    EXPECT_TRUE(is_participant_code(good));
   for (const char* bad : {"", "Jane Doe", "a.b", "../x", "\xC3\xA9", "123456789012345678901234567890123"})
     EXPECT_FALSE(is_participant_code(bad)) << bad;
 }

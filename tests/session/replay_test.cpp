@@ -16,7 +16,9 @@ namespace {
 constexpr std::uint64_t kSteps = 200;
 constexpr std::uint64_t kHashEvery = 20;
 
-World fresh_world() { return World(load_model(FILUM_SOURCE_DIR, "knot-square")); }
+World fresh_world() {
+  return World(load_model(FILUM_SOURCE_DIR, "knot-square"));
+}
 
 /// Both tools drift and open and close: enough to touch every part of the state.
 Inputs moving_inputs(const World& world, std::uint64_t step) {
@@ -52,7 +54,8 @@ void record_session(const std::string& file, const Change& change = {}, std::uin
     if (record.step % kHashEvery == 0) hashes = world.array_hashes();
     if (change) change(record, hashes);
     ASSERT_TRUE(recorder.record_step(record));
-    for (const auto& [name, hash] : hashes) ASSERT_TRUE(recorder.record_array_hash({record.step, std::string_view(name), hash}));
+    for (const auto& [name, hash] : hashes)
+      ASSERT_TRUE(recorder.record_array_hash({record.step, std::string_view(name), hash}));
   }
   ASSERT_TRUE(recorder.close());
 }
@@ -107,10 +110,12 @@ TEST(Replay, NamesExactlyTheArrayThatDiffers) {
 
 TEST(Replay, GoesToTheEndWhenAsked) {
   const synthetic::Folder folder;
-  record_session(folder.file("a"), [](StepRecord& record, auto&) { record.state_hash ^= record.step == 10 ? 1 : 0; });
+  record_session(folder.file("a"),
+                 [](StepRecord& record, auto&) { record.state_hash ^= record.step == 10 ? 1 : 0; });
   World world = fresh_world();
   std::uint64_t seen = 0;
-  replay(RecordingReader(folder.file("a")), world, [&](const StepRecord&, const Observation&) { ++seen; }, true);
+  replay(
+      RecordingReader(folder.file("a")), world, [&](const StepRecord&, const Observation&) { ++seen; }, true);
   EXPECT_EQ(seen, kSteps);
 }
 
@@ -130,7 +135,8 @@ TEST(Replay, SimulatedTableHasARowForEveryStep) {
   EXPECT_EQ(table.name, "simulated");
   EXPECT_NEAR(table.rate * world.description().dt, 1.0, 1e-12);
   for (const Column& column : table.columns)
-    EXPECT_EQ(std::visit([](const auto& values) { return values.size(); }, column.values), kSteps) << column.name;
+    EXPECT_EQ(std::visit([](const auto& values) { return values.size(); }, column.values), kSteps)
+        << column.name;
   EXPECT_NE(table.columns.back().unit, "");
 }
 

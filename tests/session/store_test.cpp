@@ -63,7 +63,8 @@ TEST(Store, RefusesNamesAndQuotesNothing) {
   EXPECT_TRUE(store.list("'; DROP TABLE filum_sessions; --").empty());
   EXPECT_TRUE(store.list().empty());
   const StoreEntry odd = store.begin("../../etc/x", "");
-  EXPECT_EQ(std::filesystem::path(store.file_of(odd.id)).parent_path(), std::filesystem::path(folder.file("s")));
+  EXPECT_EQ(std::filesystem::path(store.file_of(odd.id)).parent_path(),
+            std::filesystem::path(folder.file("s")));
 }
 
 TEST(Store, ADamagedIndexIsBuiltAnewFromTheRecordings) {

@@ -1,5 +1,6 @@
 #pragma once
-// Records made from a step number alone, so that a test can tell without any memory what must stand in a recording.
+// Records made from a step number alone, so that a test can tell without any memory what must stand in a
+// recording.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -63,7 +64,9 @@ inline EventRecord event(std::uint64_t n) {
   return record;
 }
 
-inline bool same(const Pose& a, const Pose& b) { return a.p == b.p && a.q.coeffs() == b.q.coeffs(); }
+inline bool same(const Pose& a, const Pose& b) {
+  return a.p == b.p && a.q.coeffs() == b.q.coeffs();
+}
 
 inline bool same(const StepRecord& a, const StepRecord& b) {
   bool equal = a.step == b.step && a.host_time_us == b.host_time_us && a.compute_us == b.compute_us &&
@@ -105,7 +108,8 @@ inline RecorderOptions options(const std::string& file) {
   RecorderOptions options;
   options.file = file;
   options.meta = meta();
-  options.sources = {{"models/suture/test.yaml", "diameter: 25 um\n"}, {"curricula/test.yaml", "task: knot-square\n"}};
+  options.sources = {{"models/suture/test.yaml", "diameter: 25 um\n"},
+                     {"curricula/test.yaml", "task: knot-square\n"}};
   return options;
 }
 
@@ -148,7 +152,8 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// As an ordinary user while in scope: root may write anywhere. Skips nothing when the tests do not run as root.
+/// As an ordinary user while in scope: root may write anywhere. Skips nothing when the tests do not run as
+/// root.
 class OrdinaryUser {
  public:
   OrdinaryUser() : root_(::geteuid() == 0) {
