@@ -36,7 +36,7 @@ export class TasksPage implements Page {
     clear(this.cards);
     const tasks = this.app.hello?.tasks;
     if (!tasks) { this.cards.append(h("li", { class: "quiet" }, "Waiting for the trainer…")); return; }
-    for (const task of tasks) {
+    for (const task of [...tasks].sort((a, b) => Number(a.demonstration) - Number(b.demonstration))) { // what can be practised first
       const button = h("button", { class: "card", "data-task": task.name, onclick: () => this.open(task) },
         taskPicture(task.picture, task.title), h("span", { class: "cardtitle" }, task.title), h("span", { class: "summary" }, task.summary),
         task.demonstration ? h("span", { class: "tag" }, "demonstration only") : null);
