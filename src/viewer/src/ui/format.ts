@@ -9,7 +9,7 @@ export function clock(seconds: number): string {
 /// [N] -> "123 mN", with three significant figures below 10 mN.
 export function milliNewton(newton: number): string {
   const value = newton * 1000;
-  if (value === 0) return "0 mN";
+  if (Math.abs(value) < 0.005) return "0 mN";
   const digits = Math.abs(value) >= 10 ? 0 : Math.abs(value) >= 1 ? 1 : 2;
   return `${value.toFixed(digits)} mN`;
 }
@@ -39,6 +39,7 @@ export function day(iso: string): string {
 
 /// "thread-overload" -> "Thread overload"
 export function words(name: string): string {
+  if (name === "sparc" || name === "ldlj") return name.toUpperCase();
   const text = name.replace(/[-_]+/g, " ");
   return text.charAt(0).toUpperCase() + text.slice(1);
 }

@@ -164,6 +164,7 @@ export class LivePage implements Page {
   }
 
   private addEvent(event: TimedEvent): void {
+    if (event.name === "overrun") return; // counted in the health panel
     const value = event.unit !== "-" && event.value !== 0 ? ` ${quantity(event.value, event.unit)}` : "";
     this.events.prepend(h("li", {}, h("span", { class: "when" }, `${event.time.toFixed(1)} s`), event.text || words(event.name) + value));
     while (this.events.children.length > kEventsShown) this.events.lastElementChild!.remove();

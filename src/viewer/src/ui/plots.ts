@@ -60,6 +60,7 @@ function markEvents(u: uPlot, events: readonly TimedEvent[]): void {
   ctx.font = `${Math.round(10 * devicePixelRatio)}px system-ui, sans-serif`;
   let labelled = -Infinity;
   for (const event of events) {
+    if (event.name === "overrun") continue;
     const x = u.valToPos(event.time, "x", true);
     if (x < bbox.left || x > bbox.left + bbox.width) continue;
     ctx.beginPath();
