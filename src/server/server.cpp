@@ -413,6 +413,10 @@ void Server::start() {
 void Server::stop() {
   impl_->io.stop();
   if (impl_->thread.joinable()) impl_->thread.join();
+  for (auto& [id, browser] : impl_->browsers) browser->close();
+  impl_->browsers.clear();
+  beast::error_code ignored;
+  impl_->acceptor.close(ignored);
 }
 
 std::uint16_t Server::port() const { return impl_->port; }
