@@ -30,6 +30,7 @@ export class LivePage implements Page {
   private steps: StepPanel | null = null;
   private forces: ForcePanel | null = null;
   private lastPanels = 0;
+  private refused = false; // the last start; its reason stays on the page
 
   constructor(private readonly app: App) {
     const view = app.microscope();
@@ -113,7 +114,8 @@ export class LivePage implements Page {
     if (!this.steering) this.pointer.hands.hands.length = 0;
     this.element.dataset.state = session?.state ?? "idle";
     if (session?.state === "loading") this.showLoading();
-    if (session?.state === "idle" && !this.app.result) {
+    if (session?.state === "running") this.refused = false;
+    if (session?.state === "idle" && !this.app.result && !this.refused) {
       this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", {}, "No task is running."), h("a", { class: "button", href: "#/" }, "Choose a task")));
     }
     if (session?.state === "replay" && this.app.replay) this.app.go(`#/replay/${encodeURIComponent(this.app.replay.session)}`);
@@ -130,6 +132,7 @@ export class LivePage implements Page {
   private showRefusal(what: string, advice: string): void {
     const state = this.app.session?.state;
     if (state === "running" || state === "replay") return;
+    this.refused = true;
     this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", { class: "big" }, "Not started"), h("p", {}, `${what} ${advice}`), h("a", { class: "button", href: "#/" }, "Choose a task")));
   }
 
