@@ -27,6 +27,7 @@ struct RodMaterial {
   double GJ = 3.5e-11;           // [N m2], twisting stiffness
   double friction = 0.2;         // [-], thread on thread
   double strength = 0.19;        // [N], tension at which it parts
+  double internal_friction = 0.0;  // [s], Kelvin-Voigt time of bending and twisting: moment = EI (kappa + time dkappa/dt)
   double drag = 2.6e-5;          // [N s/m2], air drag per length and speed, slender body (Cox 1970, J. Fluid Mech. 44:791)
 
   /// Solid round wire of a linear isotropic material: E [Pa], Poisson's ratio [-].

@@ -9,6 +9,8 @@
 // regularisation it does not creep: a stuck point under constant load stays where it is.
 // Neglects: rolling and spinning friction, history of N within a step. Test: friction_test.
 
+#include <algorithm>
+
 #include "base/pose.h"
 
 namespace filum {
@@ -21,13 +23,19 @@ struct FrictionPoint {
   bool slipping = false;
 };
 
+/// Stiffness of the stick range: no stiffer than lets the point give by `presliding` [m] before it slips. Lightly loaded contacts
+/// of real surfaces do so by about a micrometre, and without it the law of a nearly weightless contact is a step function.
+inline double stick_stiffness(double stiffest, double mu, double N, double presliding) noexcept {
+  return std::min(stiffest, mu * N / presliding);
+}
+
 /// xi_trial [m] must already lie in the tangent plane of `normal` (unit).
 inline FrictionPoint coulomb(const Vec3& xi_trial, const Vec3& normal, double N, double mu, double k_t) noexcept {
   FrictionPoint r;
   const double length = xi_trial.norm();
   const double limit = mu * N;
   const Mat3 P = Mat3::Identity() - normal * normal.transpose();
-  if (k_t * length <= limit) {
+  if (k_t * length <= limit * (1.0 + 1e-12)) {
     r.force = -k_t * xi_trial;
     r.energy = 0.5 * k_t * length * length;
     r.stiffness = k_t * P;

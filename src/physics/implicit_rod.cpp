@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace filum {
 namespace {
 
+constexpr int kMostHalvings = 14;
+constexpr int kMostRounds = 4;  // of contact prediction in a Newton step
 constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
 
 double node_span(const RodState& s, int i) noexcept {
@@ -35,7 +38,7 @@ ImplicitRod::ImplicitRod(const RodMaterial& m, const ContactMaterial& c, int cap
     : material(m), contact_material(c), boundary(capacity), obstacles(8 * capacity), grasps(n_tools),
       contact_(capacity, 16 * capacity), geometry_(capacity), matrix_(capacity), x_(Points::Zero(3, capacity)), x_trial_(x_),
       theta_(Eigen::VectorXd::Zero(capacity)), theta_trial_(theta_), gradient_(Eigen::Matrix4Xd::Zero(4, capacity)),
-      move_(gradient_), boundary_move_(gradient_) {
+      move_(gradient_), boundary_move_(gradient_), stiffened_(m), rest_kappa_(Eigen::Matrix2Xd::Zero(2, capacity)), rest_twist_(theta_) {
   chain_.next.resize(static_cast<std::size_t>(capacity));
   chain_.second.resize(static_cast<std::size_t>(capacity));
 }
@@ -50,7 +53,9 @@ RodMemory ImplicitRod::make_memory() const {
 
 RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {
   RodStepSummary summary;
+  soften_rest(s, o.dt);
   begin(s, memory, o);
+  predict(s, memory, o);
   for (;; ++summary.iterations) {
     summary.arrived = advance_boundary(s);
     update_geometry(s, x_, theta_, geometry_);
@@ -65,6 +70,7 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
     if (!direction(s, o, summary)) break;
     advance(s, memory, o);
   }
+  restore_rest(s);
   summary.sound = std::isfinite(summary.residual) && x_.leftCols(s.n).allFinite();
   if (summary.sound) {
     finish(s, memory, o);
@@ -75,6 +81,26 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
   return summary;
 }
 
+void ImplicitRod::soften_rest(RodState& s, double dt) noexcept {
+  stiffened_ = material;
+  rest_kappa_.leftCols(s.n) = s.rest_kappa.leftCols(s.n);
+  rest_twist_.head(s.n) = s.rest_twist.head(s.n);
+  const double r = material.internal_friction / dt;
+  if (r == 0.0) return;
+  update_geometry(s, s.x, s.theta, geometry_);
+  stiffened_.EI *= 1.0 + r;
+  stiffened_.GJ *= 1.0 + r;
+  for (int i = 1; i + 1 < s.n; ++i) {
+    s.rest_kappa.col(i) = (s.rest_kappa.col(i) + r * geometry_.kappa.col(i)) / (1.0 + r);
+    s.rest_twist[i] = (s.rest_twist[i] + r * geometry_.twist[i]) / (1.0 + r);
+  }
+}
+
+void ImplicitRod::restore_rest(RodState& s) noexcept {
+  s.rest_kappa.leftCols(s.n) = rest_kappa_.leftCols(s.n);
+  s.rest_twist.head(s.n) = rest_twist_.head(s.n);
+}
+
 void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   x_.leftCols(s.n) = s.x.leftCols(s.n);
   theta_.head(s.n) = s.theta.head(s.n);
@@ -82,6 +108,49 @@ void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodSte
   grasps.locate(memory.grasps, s);
   const double fastest = std::sqrt(s.v.leftCols(s.n).colwise().squaredNorm().maxCoeff());
   find_near(s, memory, std::max(2.0 * material.radius, std::min(1.5 * fastest * o.dt, 40.0 * material.radius)));
+}
+
+/// Starts from where the last velocity leads, if that is better than staying: a thread led by the hand moves on much as
+/// it did, and a strand that is being pushed together need not find its buckled shape anew in every step.
+void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
+  advance_boundary(s);
+  contact_.update(x_, material.radius, contact_material);
+  obstacles.update(x_, material.radius, contact_material);
+  move_.leftCols(s.n).topRows<3>() = o.dt * s.v.leftCols(s.n);
+  move_.leftCols(s.n).row(3) = o.dt * s.theta_dot.head(s.n).transpose();
+  for (int i = 0; i < s.n; ++i)
+    for (int c = 0; c < 4; ++c)
+      if (boundary.held(c, i)) move_(c, i) = 0.0;
+  const double length = largest_move(move_, s.n);
+  if (length == 0.0) return;
+  double fraction = free_fraction(s, memory, length);
+  const double before = energy(s, x_, theta_, o);
+  for (int k = 0; k < 2; ++k, fraction *= 0.5) {
+    if (try_move(s, fraction, before, o)) break;
+  }
+}
+
+/// Fraction of move_ that crosses nothing; finds the near pairs again if the move reaches beyond those known.
+double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept {
+  if (travelled_ + length > reach_) {
+    find_near(s, memory, std::max(length, 2.0 * material.radius));
+    contact_.update(x_, material.radius, contact_material);
+    obstacles.update(x_, material.radius, contact_material);
+  }
+  double fraction = 1.0;
+  if (self_contact) fraction = contact_.free_fraction(x_, move_, material.radius);
+  return std::min(fraction, obstacles.free_fraction(x_, move_, material.radius));
+}
+
+/// Goes `fraction` of move_ if the energy there is at most `highest`.
+bool ImplicitRod::try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept {
+  x_trial_.leftCols(s.n) = x_.leftCols(s.n) + fraction * move_.leftCols(s.n).topRows<3>();
+  theta_trial_.head(s.n) = theta_.head(s.n) + fraction * move_.leftCols(s.n).row(3).transpose();
+  if (!(energy(s, x_trial_, theta_trial_, o) <= highest)) return false;
+  travelled_ += fraction * largest_move(move_, s.n);
+  std::swap(x_, x_trial_);
+  std::swap(theta_, theta_trial_);
+  return true;
 }
 
 void ImplicitRod::find_near(const RodState& s, const RodMemory& memory, double reach) noexcept {
@@ -148,7 +217,7 @@ void ImplicitRod::assemble_gradient(const RodState& s, const RodStepOptions& o) 
     gradient_.col(i).head<3>() += rho * span / (dt * dt) * (travelled - predicted) + material.drag * span / dt * travelled;
     if (i + 1 < s.n) gradient_(3, i) += spin_inertia(material, s, i) / (dt * dt) * (theta_[i] - s.theta[i] - dt * s.theta_dot[i]);
   }
-  add_elastic_gradient(material, s, geometry_, gradient_);
+  add_elastic_gradient(stiffened_, s, geometry_, gradient_);
   if (self_contact) contact_.add_gradient(x_, s.x, contact_material, gradient_);
   obstacles.add_gradient(x_, s.x, material.radius, contact_material, gradient_);
   grasps.add_gradient(x_, gradient_);
@@ -169,9 +238,9 @@ void ImplicitRod::assemble_stiffness(const RodState& s, const RodStepOptions& o,
       if (boundary.held(c, i)) block(c, c) += kHeld;
     matrix_.add_diagonal(i, block);
   }
-  add_elastic_hessian(material, s, geometry_, kind, chain_, matrix_);
-  if (self_contact) contact_.add_stiffness(material.radius, contact_material, chain_, matrix_);
-  obstacles.add_stiffness(contact_material, chain_, matrix_);
+  add_elastic_hessian(stiffened_, s, geometry_, kind, chain_, matrix_);
+  if (self_contact) contact_.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
+  obstacles.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
   grasps.add_stiffness(chain_, matrix_);
 }
 
@@ -185,45 +254,48 @@ double ImplicitRod::force_scale(const RodState& s) const noexcept {
   return scale;
 }
 
+/// Newton direction; solved again while it leads into contacts that the matrix does not know yet.
 bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, RodStepSummary& summary) noexcept {
-  assemble_stiffness(s, o, Stiffness::exact);
-  if (!matrix_.factor()) {
-    ++summary.fallbacks;
-    assemble_stiffness(s, o, Stiffness::gauss_newton);
-    if (!matrix_.factor()) return false;
+  Stiffness kind = Stiffness::exact;
+  for (int round = 0; round < kMostRounds;) {
+    assemble_stiffness(s, o, kind);
+    move_.leftCols(s.n) = -gradient_.leftCols(s.n);
+    if (self_contact) contact_.add_expected(material.radius, contact_material, chain_, move_, matrix_);
+    obstacles.add_expected(contact_material, chain_, move_, matrix_);
+    if (!matrix_.factor()) {
+      if (kind == Stiffness::gauss_newton) return false;
+      kind = Stiffness::gauss_newton;
+      ++summary.fallbacks;
+      continue;
+    }
+    matrix_.solve(move_.leftCols(s.n));
+    const double length = largest_move(move_, s.n);
+    if (length > o.longest_move && kind == Stiffness::exact) {  // compressed strands make it so
+      kind = Stiffness::gauss_newton;
+      ++summary.fallbacks;
+      continue;
+    }
+    if (length > o.longest_move) move_.leftCols(s.n) *= o.longest_move / length;
+    const bool strands = self_contact && contact_.expect(move_, material.radius);
+    const bool bodies = obstacles.expect(move_, material.radius);
+    if (!strands && !bodies) break;
+    ++round;
   }
-  move_.leftCols(s.n) = -gradient_.leftCols(s.n);
-  matrix_.solve(move_.leftCols(s.n));
   return true;
 }
 
 void ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
-  const int n = s.n;
-  const double slope = (gradient_.leftCols(n).array() * move_.leftCols(n).array()).sum();
-  double length = largest_move(move_, n);
-  if (travelled_ + length > reach_) {
-    find_near(s, memory, std::max(length, 2.0 * material.radius));
-    contact_.update(x_, material.radius, contact_material);
-    obstacles.update(x_, material.radius, contact_material);
-  }
-  double fraction = 1.0;
-  if (self_contact) fraction = contact_.free_fraction(x_, move_, material.radius);
-  fraction = std::min(fraction, obstacles.free_fraction(x_, move_, material.radius));
+  const double slope = (gradient_.leftCols(s.n).array() * move_.leftCols(s.n).array()).sum();
+  double fraction = free_fraction(s, memory, largest_move(move_, s.n));
   const double before = energy(s, x_, theta_, o);
-  for (int k = 0;; ++k) {
-    x_trial_.leftCols(n) = x_.leftCols(n) + fraction * move_.leftCols(n).topRows<3>();
-    theta_trial_.head(n) = theta_.head(n) + fraction * move_.leftCols(n).row(3).transpose();
-    if (k == 6 || energy(s, x_trial_, theta_trial_, o) <= before + 1e-4 * fraction * slope) break;
-    fraction *= 0.5;
-  }
-  travelled_ += fraction * length;
-  std::swap(x_, x_trial_);
-  std::swap(theta_, theta_trial_);
+  for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5)
+    if (try_move(s, fraction, before + 1e-4 * fraction * slope, o)) return;
+  try_move(s, fraction, std::numeric_limits<double>::infinity(), o);  // at the limit of rounding
 }
 
 double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept {
   update_geometry(s, x, theta, geometry_);
-  double u = elastic_energy(material, s, geometry_);
+  double u = elastic_energy(stiffened_, s, geometry_);
   const double rho = material.mass_per_length(), dt = o.dt;
   for (int i = 0; i < s.n; ++i) {
     const double span = node_span(s, i);

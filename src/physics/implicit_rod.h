@@ -5,6 +5,8 @@
 // q^ = q_n + dt v_n (Martin et al., ACM TOG 30(4):72, 2011, eq. 4), with the normal forces of friction taken from
 // the last Newton iterate. Each iterate is reached by a line search on that sum, and by no more than
 // the fraction of the move that provably crosses nothing, so every accepted shape has the topology of the one before.
+// Internal friction (Kelvin-Voigt) in backward Euler form, EI (|kappa - kappa0|^2 + r |kappa - kappa_n|^2)/2 with r = time/dt, is a
+// stiffness (1 + r) EI about the rest shape (kappa0 + r kappa_n)/(1 + r), and is computed as that.
 // Linear systems: base/block_cholesky.h. Cost is linear in nodes and contacts. Nothing allocates after the constructor.
 // Tests: implicit_rod_test; `filum validate`.
 
@@ -20,8 +22,9 @@ namespace filum {
 struct RodStepOptions {
   double dt = 1e-3;                   // [s]
   Vec3 gravity = Vec3(0, 0, -9.81);   // [m/s2]
-  int max_iterations = 12;            // Newton iterations
+  int max_iterations = 20;            // Newton iterations
   double force_tolerance = 1e-10;     // [N], unbalanced nodal force that is always good enough
+  double longest_move = 1e3;          // [m], of a node in one iteration; a longer one shows a nearly singular stiffness
   double relative_tolerance = 1e-3;   // [-], of the largest tension or contact force in the thread
 };
 
@@ -73,6 +76,8 @@ class ImplicitRod {
 
  private:
   void begin(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
+  void soften_rest(RodState& s, double dt) noexcept;
+  void restore_rest(RodState& s) noexcept;
   void find_near(const RodState& s, const RodMemory& memory, double reach) noexcept;
   void rebuild_pattern(int n) noexcept;
   bool advance_boundary(const RodState& s) noexcept;
@@ -80,6 +85,9 @@ class ImplicitRod {
   void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
   double force_scale(const RodState& s) const noexcept;
   bool direction(const RodState& s, const RodStepOptions& o, RodStepSummary& summary) noexcept;
+  void predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
+  double free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept;
+  bool try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept;
   void advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept;
   void finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept;
@@ -92,6 +100,9 @@ class ImplicitRod {
   Points x_, x_trial_;
   Eigen::VectorXd theta_, theta_trial_;
   Eigen::Matrix4Xd gradient_, move_, boundary_move_;
+  RodMaterial stiffened_;                  // the material with what internal friction adds in this step
+  Eigen::Matrix2Xd rest_kappa_;            // rest shape proper, while the step works with the softened one
+  Eigen::VectorXd rest_twist_;
   double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
   double travelled_ = 0.0;
 };

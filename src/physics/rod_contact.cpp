@@ -54,12 +54,13 @@ double conservative_advance(const Vec3 ends[4], const Vec3 moves[4], double keep
   for (int a = 0; a < 2; ++a)
     for (int b = 2; b < 4; ++b) speed = std::max(speed, (moves[a] - moves[b]).norm());
   if (speed == 0.0) return 1.0;
-  double fraction = 0.0;
+  double fraction = 0.0, first_room = 0.0;
   for (int k = 0; k < 32; ++k) {
     Vec3 p[4];
     for (int e = 0; e < 4; ++e) p[e] = ends[e] + fraction * moves[e];
     const double room = closest_points(p[0], p[1], p[2], p[3]).distance - keep;
-    if (room < 0.02 * keep) break;
+    if (k == 0) first_room = room;
+    if (room < 0.05 * first_room) break;
     fraction += 0.98 * room / speed;
     if (fraction >= 1.0) return 1.0;
   }
@@ -153,43 +154,86 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
     p.distance = c.distance;
     p.normal = c.d / c.distance;
     p.force = -pair_potential(c.distance, radius, m.stiffness).slope;
+    p.expected = false;
   }
 }
 
 double RodContact::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept {
   double u = 0.0;
-  const double k_t = m.tangential_ratio * m.stiffness;
   for (const RodPair& p : pairs_) {
     u += pair_potential(measure(x, p.i, p.j).distance, radius, m.stiffness).energy;
-    if (p.force > 0.0) u += coulomb(trial_bristle(p, x, x_start), p.normal, p.force, m.friction, k_t).energy;
+    if (p.force > 0.0) u += coulomb(trial_bristle(p, x, x_start), p.normal, p.force, m.friction, m.stick(m.friction, p.force)).energy;
   }
   return u;
 }
 
 void RodContact::add_gradient(const Points& x, const Points& x_start, const ContactMaterial& m,
                               Eigen::Matrix4Xd& gradient) noexcept {
-  const double k_t = m.tangential_ratio * m.stiffness;
   for (RodPair& p : pairs_) {
     if (p.force <= 0.0) continue;
-    p.friction = coulomb(trial_bristle(p, x, x_start), p.normal, p.force, m.friction, k_t);
+    p.friction = coulomb(trial_bristle(p, x, x_start), p.normal, p.force, m.friction, m.stick(m.friction, p.force));
     const Vec3 force = p.force * p.normal + p.friction.force;  // on the first edge
     const Weights w = weights(p);
     for (int a = 0; a < 4; ++a) gradient.col(w.node[a]).head<3>() -= w.w[a] * force;
   }
 }
 
-void RodContact::add_stiffness(double radius, const ContactMaterial& m, const ChainSlots& chain,
+void RodContact::add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
                                BlockCholesky& matrix) const noexcept {
   for (const RodPair& p : pairs_) {
     if (p.force <= 0.0) continue;
     const double curvature = pair_potential(p.distance, radius, m.stiffness).curvature;
     const Mat3 k = curvature * p.normal * p.normal.transpose() + p.friction.stiffness;
+    add_block(p, k, chain, matrix);
+    add_tilt(p, x, chain, matrix);
+  }
+}
+
+void RodContact::add_tilt(const RodPair& p, const Points& x, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
+  const Vec3 u = x.col(p.i + 1) - x.col(p.i), v = x.col(p.j + 1) - x.col(p.j);
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), crossing = 1.0 - uv * uv / (uu * vv);
+  const Mat3 nn = p.normal * p.normal.transpose();
+  auto add = [&](int edge, double squared) {
+    const Mat4 block = pad(tilt_stiffness(p.force, p.distance, squared, crossing) * nn);
+    matrix.add_diagonal(edge, block);
+    matrix.add_diagonal(edge + 1, block);
+    matrix.add(chain.next[edge], -block);
+  };
+  if (p.s > 0.0 && p.s < 1.0) add(p.i, uu);
+  if (p.t > 0.0 && p.t < 1.0) add(p.j, vv);
+}
+
+void RodContact::add_block(const RodPair& p, const Mat3& k, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
+  const Weights w = weights(p);
+  for (int a = 0; a < 4; ++a) matrix.add_diagonal(w.node[a], pad(w.w[a] * w.w[a] * k));
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b) matrix.add(p.slots[2 * a + b], pad(w.w[a] * w.w[2 + b] * k));
+  matrix.add(chain.next[p.i], pad(w.w[0] * w.w[1] * k));
+  matrix.add(chain.next[p.j], pad(w.w[2] * w.w[3] * k));
+}
+
+bool RodContact::expect(const Eigen::Matrix4Xd& move, double radius) noexcept {
+  bool changed = false;
+  for (RodPair& p : pairs_) {
+    if (p.force > 0.0) continue;
     const Weights w = weights(p);
-    for (int a = 0; a < 4; ++a) matrix.add_diagonal(w.node[a], pad(w.w[a] * w.w[a] * k));
-    for (int a = 0; a < 2; ++a)
-      for (int b = 0; b < 2; ++b) matrix.add(p.slots[2 * a + b], pad(w.w[a] * w.w[2 + b] * k));
-    matrix.add(chain.next[p.i], pad(w.w[0] * w.w[1] * k));
-    matrix.add(chain.next[p.j], pad(w.w[2] * w.w[3] * k));
+    double gap = p.distance - 2.0 * radius;
+    for (int a = 0; a < 4; ++a) gap += w.w[a] * p.normal.dot(move.col(w.node[a]).head<3>());
+    const bool touches = gap < (p.expected ? 0.0 : -1e-4 * radius);
+    changed = changed || touches != p.expected;
+    p.expected = touches;
+  }
+  return changed;
+}
+
+void RodContact::add_expected(double radius, const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
+                              BlockCholesky& matrix) const noexcept {
+  for (const RodPair& p : pairs_) {
+    if (!p.expected) continue;
+    const Vec3 pull = -m.stiffness * (p.distance - 2.0 * radius) * p.normal;  // towards the surface
+    const Weights w = weights(p);
+    for (int a = 0; a < 4; ++a) rhs.col(w.node[a]).head<3>() += w.w[a] * pull;
+    add_block(p, m.stiffness * p.normal * p.normal.transpose(), chain, matrix);
   }
 }
 
@@ -206,7 +250,7 @@ double RodContact::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, 
     for (int a = 0; a < 2; ++a)
       for (int b = 2; b < 4; ++b) fastest = std::max(fastest, (moves[a] - moves[b]).squaredNorm());
     const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
-    const double keep = std::min(1.2 * radius, 0.6 * distance);
+    const double keep = std::min(1.7 * radius, 0.8 * distance);
     if (fastest <= (distance - keep) * (distance - keep)) continue;
     fraction *= conservative_advance(ends, moves, keep);
   }

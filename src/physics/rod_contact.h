@@ -11,6 +11,7 @@
 // free of crossing: relative displacement of two edges, largest over their end points, bounds how far D can fall.
 // Neglects: rolling of the strands about their own axes under friction; anisotropy. Tests: rod_contact_test.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -23,8 +24,11 @@ namespace filum {
 
 struct ContactMaterial {
   double stiffness = 1e4;             // [N/m], normal, each pair of edges
+  double wall_ratio = 0.3;            // [-], stiffness against bars and sheet, each edge, of that between strands
   double tangential_ratio = 0.7;      // [-], k_t / k (Mindlin: 2(1-nu)/(2-nu), about 0.75 at nu 0.4)
   double friction = 0.2;              // [-]
+  double presliding = 0.6e-6;         // [m], give of a contact before it slips, at light load (friction.h)
+  double stick(double mu, double N) const noexcept { return stick_stiffness(tangential_ratio * stiffness, mu, N, presliding); }
 };
 
 /// Memory of one touching pair between steps: what friction needs to stick. Part of the state.
@@ -41,6 +45,7 @@ struct RodPair {
   Vec3 normal = Vec3::UnitX();        // unit, from edge j to edge i
   double distance = 1;                // [m], of the axes
   double force = 0;                   // [N], normal
+  bool expected = false;              // not touching yet, but would after the Newton step
   Vec3 xi_start = Vec3::Zero();       // [m], bristle at the start of the step
   FrictionPoint friction;
   BlockCholesky::Slot slots[4];       // blocks (i,j), (i,j+1), (i+1,j), (i+1,j+1)
@@ -71,7 +76,16 @@ class RodContact {
   double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept;
   /// Adds the gradient, then the stiffness, at the configuration of the last update.
   void add_gradient(const Points& x, const Points& x_start, const ContactMaterial& m, Eigen::Matrix4Xd& gradient) noexcept;
-  void add_stiffness(double radius, const ContactMaterial& m, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
+  void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
+                     BlockCholesky& matrix) const noexcept;
+
+  /// Looks where `move` would lead: pairs that would overlap, to first order, are expected to touch, those expected before that
+  /// would part again are not. True if the set changed. Without this a strand could only creep up on another one, halving the
+  /// gap with every Newton step.
+  bool expect(const Eigen::Matrix4Xd& move, double radius) noexcept;
+  /// Adds the springs of the expected pairs, at rest at the surface, to the right-hand side and the matrix.
+  void add_expected(double radius, const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
+                    BlockCholesky& matrix) const noexcept;
 
   /// Largest fraction of `move` (4 x n, only the first three rows count) that provably crosses nothing.
   double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;
@@ -80,11 +94,23 @@ class RodContact {
   int n_touching(double radius) const noexcept;
 
  private:
+  void add_tilt(const RodPair& p, const Points& x, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
+  void add_block(const RodPair& p, const Mat3& k, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
+
   std::vector<RodPair> pairs_, previous_;
   Points low_, high_;   // boxes of chunks of edges
   std::vector<double> arc_;
   bool overflowed_ = false;
 };
+
+/// Stiffness against tilting that a pressed contact has from its geometry: turning an edge about the point where it touches a
+/// body whose axis is `distance` away brings the axes closer by distance (1 - cos), which a force F opposes. It is the part
+/// -phi' B^T A^-1 B of the second derivative of a closest distance (envelope theorem; Choi, Tong, Jawed & Joo, J. Appl. Mech.
+/// 88:051008, 2021, take derivatives of the same distance) that is positive; on the normal displacement of the edge's ends,
+/// one against the other. `crossing`: sine squared of the angle between the axes.
+inline double tilt_stiffness(double force, double distance, double edge_squared, double crossing) noexcept {
+  return force * distance / (edge_squared * std::max(crossing, 0.2));
+}
 
 /// phi(D), its first and second derivative.
 struct PairPotential {

@@ -11,8 +11,20 @@ namespace {
 
 double bar_radius(const Obstacle& o, double t) noexcept { return (1.0 - t) * o.r_a + t * o.r_b; }
 
+/// Distance of the axes that a single move may not undercut: a fresh touch is met at the surface, where the contact force can
+/// answer it, not deep inside.
+double closest_allowed(double touching, double distance, double radius) noexcept {
+  return std::min(touching - 0.3 * radius, 0.95 * distance);
+}
+
 Pose between(const Pose& from, const Pose& to, double f) noexcept {
   return {(1.0 - f) * from.p + f * to.p, from.q.slerp(f, to.q)};
+}
+
+void add_block(const ObstacleTouch& t, const Mat3& k, const ChainSlots& chain, BlockCholesky& matrix) noexcept {
+  matrix.add_diagonal(t.edge, pad((1.0 - t.s) * (1.0 - t.s) * k));
+  matrix.add_diagonal(t.edge + 1, pad(t.s * t.s * k));
+  matrix.add(chain.next[t.edge], pad(t.s * (1.0 - t.s) * k));
 }
 
 /// Contact spring of a wall: like the strands' own but without the barrier, since a bar is thick.
@@ -90,7 +102,7 @@ bool RodObstacles::advance_bodies(const Points& x, double radius) noexcept {
       const Vec3 ends[4] = {x.col(t.edge), x.col(t.edge + 1), body.X_now * o.a_B, body.X_now * o.b_B};
       const Vec3 moves[4] = {Vec3::Zero(), Vec3::Zero(), body.X_end * o.a_B - ends[2], body.X_end * o.b_B - ends[3]};
       const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
-      const double keep = std::min(0.5 * (radius + bar_radius(o, t.t)), 0.8 * distance);
+      const double keep = std::min(0.6 * (radius + bar_radius(o, t.t)), 0.8 * distance);
       fraction = std::min(fraction, conservative_advance(ends, moves, keep));
     }
     body.X_now = fraction >= 1.0 ? body.X_end : between(body.X_now, body.X_end, fraction);
@@ -112,7 +124,7 @@ void RodObstacles::measure(const Points& x, double radius, ObstacleTouch& touch)
     touch.gap = touch.normal.dot(x.col(touch.edge + (touch.s > 0.5)) - a_W_[k]) - radius;
     return;
   }
-  const SegmentPair c = closest_points(x.col(touch.edge), x.col(touch.edge + 1), a_W_[k], b_W_[k]);
+  const SegmentPair c = closest_to_bar(x.col(touch.edge), x.col(touch.edge + 1), a_W_[k], b_W_[k], o.r_a, o.r_b);
   touch.s = c.s;
   touch.t = c.t;
   touch.normal = c.d / std::max(c.distance, 1e-12);
@@ -131,19 +143,19 @@ Vec3 RodObstacles::trial_bristle(const ObstacleTouch& t, const Points& x, const 
 void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m) noexcept {
   for (ObstacleTouch& t : touches_) {
     measure(x, radius, t);
-    t.force = t.gap < 0.0 ? -m.stiffness * t.gap : 0.0;
+    t.force = t.gap < 0.0 ? -m.wall_ratio * m.stiffness * t.gap : 0.0;
+    t.expected = false;
   }
 }
 
 double RodObstacles::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept {
   double u = 0.0;
-  const double k_t = m.tangential_ratio * m.stiffness;
   for (const ObstacleTouch& t : touches_) {
     ObstacleTouch trial = t;
     measure(x, radius, trial);
-    u += wall_energy(trial.gap, m.stiffness);
+    u += wall_energy(trial.gap, m.wall_ratio * m.stiffness);
     const double mu = obstacles[static_cast<std::size_t>(t.obstacle)].friction;
-    if (t.force > 0.0) u += coulomb(trial_bristle(t, x, x_start), t.normal, t.force, mu, k_t).energy;
+    if (t.force > 0.0) u += coulomb(trial_bristle(t, x, x_start), t.normal, t.force, mu, m.stick(mu, t.force)).energy;
   }
   return u;
 }
@@ -151,11 +163,10 @@ double RodObstacles::energy(const Points& x, const Points& x_start, double radiu
 void RodObstacles::add_gradient(const Points& x, const Points& x_start, double radius, const ContactMaterial& m,
                                 Eigen::Matrix4Xd& gradient) noexcept {
   for (ObstacleBody& b : bodies) b.force = b.torque = Vec3::Zero();
-  const double k_t = m.tangential_ratio * m.stiffness;
   for (ObstacleTouch& t : touches_) {
     if (t.force <= 0.0) continue;
     const Obstacle& o = obstacles[static_cast<std::size_t>(t.obstacle)];
-    t.friction = coulomb(trial_bristle(t, x, x_start), t.normal, t.force, o.friction, k_t);
+    t.friction = coulomb(trial_bristle(t, x, x_start), t.normal, t.force, o.friction, m.stick(o.friction, t.force));
     const Vec3 on_thread = t.force * t.normal + t.friction.force;
     gradient.col(t.edge).head<3>() -= (1.0 - t.s) * on_thread;
     gradient.col(t.edge + 1).head<3>() -= t.s * on_thread;
@@ -166,13 +177,44 @@ void RodObstacles::add_gradient(const Points& x, const Points& x_start, double r
   }
 }
 
-void RodObstacles::add_stiffness(const ContactMaterial& m, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
+void RodObstacles::add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
+                                 BlockCholesky& matrix) const noexcept {
   for (const ObstacleTouch& t : touches_) {
     if (t.force <= 0.0) continue;
-    const Mat3 k = m.stiffness * t.normal * t.normal.transpose() + t.friction.stiffness;
-    matrix.add_diagonal(t.edge, pad((1.0 - t.s) * (1.0 - t.s) * k));
-    matrix.add_diagonal(t.edge + 1, pad(t.s * t.s * k));
-    matrix.add(chain.next[t.edge], pad(t.s * (1.0 - t.s) * k));
+    const Mat3 k = m.wall_ratio * m.stiffness * t.normal * t.normal.transpose() + t.friction.stiffness;
+    add_block(t, k, chain, matrix);
+    const auto b = static_cast<std::size_t>(t.obstacle);
+    if (obstacles[b].kind == Obstacle::Kind::plane || t.s <= 0.0 || t.s >= 1.0) continue;
+    const Vec3 u = x.col(t.edge + 1) - x.col(t.edge), v = b_W_[b] - a_W_[b];
+    const double uu = u.squaredNorm(), crossing = u.cross(v).squaredNorm() / (uu * v.squaredNorm());
+    const double distance = t.gap + radius + bar_radius(obstacles[b], t.t);
+    const Mat4 block = pad(tilt_stiffness(t.force, distance, uu, crossing) * t.normal * t.normal.transpose());
+    matrix.add_diagonal(t.edge, block);
+    matrix.add_diagonal(t.edge + 1, block);
+    matrix.add(chain.next[t.edge], -block);
+  }
+}
+
+bool RodObstacles::expect(const Eigen::Matrix4Xd& move, double radius) noexcept {
+  bool changed = false;
+  for (ObstacleTouch& t : touches_) {
+    if (t.force > 0.0) continue;
+    const Vec3 step = (1.0 - t.s) * move.col(t.edge).head<3>() + t.s * move.col(t.edge + 1).head<3>();
+    const bool touches = t.gap + t.normal.dot(step) < (t.expected ? 0.0 : -1e-4 * radius);
+    changed = changed || touches != t.expected;
+    t.expected = touches;
+  }
+  return changed;
+}
+
+void RodObstacles::add_expected(const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
+                                BlockCholesky& matrix) const noexcept {
+  for (const ObstacleTouch& t : touches_) {
+    if (!t.expected) continue;
+    const Vec3 pull = -m.wall_ratio * m.stiffness * t.gap * t.normal;
+    rhs.col(t.edge).head<3>() += (1.0 - t.s) * pull;
+    rhs.col(t.edge + 1).head<3>() += t.s * pull;
+    add_block(t, m.wall_ratio * m.stiffness * t.normal * t.normal.transpose(), chain, matrix);
   }
 }
 
@@ -185,7 +227,7 @@ double RodObstacles::free_fraction(const Points& x, const Eigen::Matrix4Xd& move
     const Vec3 moves[4] = {fraction * move.col(t.edge).head<3>(), fraction * move.col(t.edge + 1).head<3>(), Vec3::Zero(),
                            Vec3::Zero()};
     const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
-    const double keep = std::min(0.5 * (radius + bar_radius(obstacles[k], t.t)), 0.8 * distance);
+    const double keep = closest_allowed(radius + bar_radius(obstacles[k], t.t), distance, radius);
     if (std::max(moves[0].norm(), moves[1].norm()) <= distance - keep) continue;
     fraction *= conservative_advance(ends, moves, keep);
   }

@@ -34,6 +34,7 @@ struct ObstacleTouch {
   Vec3 normal = Vec3::UnitZ();        // unit, from the obstacle to the thread
   double gap = 1;                     // [m], between the surfaces
   double force = 0;                   // [N]
+  bool expected = false;              // see RodContact::expect
   Vec3 xi_start = Vec3::Zero();       // [m], turned with the body
   FrictionPoint friction;
 };
@@ -57,7 +58,10 @@ class RodObstacles {
   double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept;
   void add_gradient(const Points& x, const Points& x_start, double radius, const ContactMaterial& m,
                     Eigen::Matrix4Xd& gradient) noexcept;
-  void add_stiffness(const ContactMaterial& m, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
+  void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
+                     BlockCholesky& matrix) const noexcept;
+  bool expect(const Eigen::Matrix4Xd& move, double radius) noexcept;
+  void add_expected(const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs, BlockCholesky& matrix) const noexcept;
   double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;
 
   const std::vector<ObstacleTouch>& touches() const noexcept { return touches_; }

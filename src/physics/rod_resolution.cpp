@@ -68,11 +68,18 @@ bool wants_halving(const ResolutionOptions& o, const RodState& s, const Near& ne
   return s.rest_length[j] > near.shortest_touching(j, o.longest * 2.0, o.touching_edge);
 }
 
-bool may_go(const ResolutionOptions& o, const RodState& s, const Near& near, int i) noexcept {
+/// Height [m] of node i above the chord of its neighbours: how far the thread jumps if the node goes.
+double height_at(const RodState& s, int i) noexcept {
+  const Vec3 chord = s.x.col(i + 1) - s.x.col(i - 1);
+  return chord.cross(Vec3(s.x.col(i) - s.x.col(i - 1))).norm() / chord.norm();
+}
+
+// Strands that are not among the near pairs are more than a diameter away, so a jump of a radius passes nothing.
+bool may_go(const ResolutionOptions& o, const RodState& s, const Near& near, double radius, int i) noexcept {
   if (s.alive[i - 1] == 0 || s.alive[i] == 0) return false;
   if (s.rest_length[i - 1] + s.rest_length[i] > o.longest) return false;
   if (turn_at(s, i) > o.slight_turn || turn_at(s, i - 1) + turn_at(s, i) + turn_at(s, i + 1) > 3.0 * o.slight_turn) return false;
-  return !near.any(i - 1) && !near.any(i);
+  return height_at(s, i) < radius && !near.any(i - 1) && !near.any(i);
 }
 
 }  // namespace
@@ -126,7 +133,7 @@ void remove_node(RodState& s, int i) noexcept {
   --s.n;
 }
 
-int adapt_resolution(const ResolutionOptions& o, int capacity, const RodContact& contact, const RodObstacles& obstacles,
+int adapt_resolution(const ResolutionOptions& o, int capacity, double radius, const RodContact& contact, const RodObstacles& obstacles,
                      RodState& s, RodMemory& memory) noexcept {
   const Near near{contact, obstacles};
   int changes = 0;
@@ -137,7 +144,7 @@ int adapt_resolution(const ResolutionOptions& o, int capacity, const RodContact&
       renumber(memory.self, j, +1, true);
       renumber(memory.obstacle, j, +1, false);
       ++changes;
-    } else if (j >= 1 && s.n > 8 && may_go(o, s, near, j)) {
+    } else if (j >= 1 && s.n > 8 && may_go(o, s, near, radius, j)) {
       remove_node(s, j);
       renumber(memory.self, j - 1, -1, true);
       renumber(memory.obstacle, j - 1, -1, false);

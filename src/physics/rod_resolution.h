@@ -21,7 +21,7 @@ struct ResolutionOptions {
 
 /// Adapts `s` and the friction memory that names its edges. `contact` and `obstacles` are those of the last step; nodes near a
 /// pair or a touch are not removed. `capacity` nodes are never exceeded. Returns the number of changes made.
-int adapt_resolution(const ResolutionOptions& o, int capacity, const RodContact& contact, const RodObstacles& obstacles,
+int adapt_resolution(const ResolutionOptions& o, int capacity, double radius, const RodContact& contact, const RodObstacles& obstacles,
                      RodState& s, RodMemory& memory) noexcept;
 
 /// Halves edge j / removes inner node i.

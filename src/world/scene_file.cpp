@@ -108,8 +108,10 @@ RodMaterial load_suture(const std::string& path, ContactMaterial& contact) {
   m.friction = measured(file, "friction_coefficient", "-", Range::between(0.0, 2.0));
   m.strength = measured(file, "strength", "N", Range::positive());
   m.drag = measured(file, "air_drag", "N.s/m2", Range::not_negative());
+  m.internal_friction = measured(file, "internal_friction", "ms", Range::not_negative());
   contact.stiffness = measured(file, "squeeze_stiffness", "N/m", Range::positive());
   contact.friction = m.friction;
+  contact.presliding = 0.05 * m.radius;
   file.finish();
   return m;
 }
@@ -169,6 +171,8 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
   m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));
   read_instruments(root, scene, *m);
+  m->step.max_iterations = scene.integer("newton_iterations", 1, 100);
+  m->step.longest_move = 0.5 * m->resolution.longest;
   d.dt = m->step.dt = scene.quantity("step", "ms", {1e-4, 5e-3});
   scene.finish();
   return m;

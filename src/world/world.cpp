@@ -12,6 +12,7 @@
 namespace filum {
 namespace {
 
+constexpr double kTrouble = 1e-4;      // [N], imbalance left by the solver that is worth reporting
 constexpr double kTakeGap = 0.10e-3;   // [m], tip gap below which closing jaws take what lies between them
 constexpr double kLeaveGap = 0.16e-3;  // [m], tip gap above which they have let go
 constexpr double kIgnore = 0.45e-3;    // [m], thread on either side of the pads that does not touch the jaws that hold it
@@ -91,7 +92,8 @@ void World::step(const Inputs& inputs) noexcept {
   impl_->open_and_close_jaws();
   impl_->step_thread();
   impl_->part_overloaded_thread();
-  adapt_resolution(impl_->model->resolution, impl_->model->description.capacity, impl_->rod.contact(), impl_->rod.obstacles,
+  adapt_resolution(impl_->model->resolution, impl_->model->description.capacity,
+                   impl_->model->thread.radius, impl_->rod.contact(), impl_->rod.obstacles,
                    impl_->state.thread, impl_->state.memory);
   ++impl_->state.step;
   impl_->observe();
@@ -189,7 +191,7 @@ void World::Impl::step_thread() noexcept {
   std::array<int, 3> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) before[i] = held_by(static_cast<int>(i));
   solver = rod.step(state.thread, state.memory, model->step);
-  if (!solver.sound || !solver.converged) event("solver-trouble", -1, solver.residual, "N");
+  if (!solver.sound || (!solver.converged && solver.residual > kTrouble)) event("solver-trouble", -1, solver.residual, "N");
   for (std::size_t i = 0; i < commands.size(); ++i) {
     state.force[i] = rod.obstacles.bodies[i].force + rod.grasps.tools[i].force;
     state.torque[i] = rod.obstacles.bodies[i].torque + rod.grasps.tools[i].torque;
