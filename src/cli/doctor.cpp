@@ -1,0 +1,207 @@
+// filum doctor: is this machine fast enough, which devices are there, is the store sound; with advice for what is not.
+
+#include <CLI/CLI.hpp>
+#include <sys/statvfs.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/version.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
+
+#include "base/error.h"
+#include "cli/options.h"
+#include "cli/setup.h"
+#include "haptics/haptic_loop.h"
+#include "session/recorder.h"
+#include "session/store.h"
+#include "world/world.h"
+
+namespace filum {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DoctorOptions {
+  CommonOptions common;
+  std::string store, viewer, serial;
+};
+
+struct Check {
+  std::string name;
+  bool ok = false;
+  std::string detail;
+  std::string advice;  // empty when ok
+};
+
+std::string number(double x, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", digits, x);
+  return text;
+}
+
+Check check_cores() {
+  const unsigned cores = std::thread::hardware_concurrency();
+  const bool ok = cores >= 2;
+  return {"cores", ok, std::to_string(cores) + " processor cores",
+          ok ? "" : "The world and the scoring need a core each: use a machine with two or more."};
+}
+
+Check check_timer() {
+  constexpr std::int64_t kPeriod = 1000;
+  constexpr int kTurns = 300;
+  std::vector<std::int64_t> late;
+  std::int64_t next = steady_now_us() + kPeriod;
+  for (int i = 0; i < kTurns; ++i, next += kPeriod) {
+    const timespec due{static_cast<time_t>(next / 1'000'000), static_cast<long>(next % 1'000'000) * 1000};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {}
+    late.push_back(std::max<std::int64_t>(0, steady_now_us() - next));
+  }
+  std::sort(late.begin(), late.end());
+  const std::int64_t p50 = late[kTurns / 2], p95 = late[kTurns * 95 / 100], most = late.back();
+  const bool ok = p95 < kPeriod;
+  return {"timer", ok,
+          "1 kHz loop over 0.3 s: late by " + std::to_string(p50) + " us (median), " + std::to_string(p95) + " us (p95), " +
+              std::to_string(most) + " us (most)",
+          ok ? "" : "Close other programs; on a laptop plug in the charger; a virtual machine needs cores of its own."};
+}
+
+// Time of a step of the scene as it stands at the beginning of a task, tools moving.
+Check check_speed(const std::string& root) {
+  const Setup setup = load_setup(root, "knot-square");
+  World world(setup.model);
+  const double dt = world.description().dt;
+  Inputs inputs;
+  for (std::size_t i = 0; i < inputs.tools.size(); ++i) {
+    inputs.tools[i].X_WD = world.observation().tools[i].X_WT;
+    inputs.tools[i].valid = true;
+  }
+  std::vector<double> ms;
+  for (int i = 0; i < 300; ++i) {
+    inputs.tools[0].X_WD.p.z() += 2e-6;
+    const std::int64_t begin = steady_now_us();
+    world.step(inputs);
+    ms.push_back(1e-3 * static_cast<double>(steady_now_us() - begin));
+  }
+  std::sort(ms.begin(), ms.end());
+  const double p50 = ms[ms.size() / 2], p99 = ms[ms.size() * 99 / 100];
+  const bool ok = p99 <= 1e3 * dt;
+  return {"speed", ok,
+          "step of knot-square: " + number(p50, 2) + " ms (median), " + number(p99, 2) + " ms (p99), of " + number(1e3 * dt, 1) +
+              " ms there are",
+          ok ? "" : "The scene will run slower than real time, and say so. Use a faster machine or close other programs."};
+}
+
+Check check_devices(const std::string& serial) {
+  std::vector<std::string> ports;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator("/dev", error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("ttyACM") || name.starts_with("ttyUSB")) ports.push_back(entry.path().string());
+  }
+  std::sort(ports.begin(), ports.end());
+  std::string detail = ports.empty() ? "no serial port; the pointer in the browser always works" : "serial ports:";
+  bool ok = true;
+  for (const std::string& port : ports) {
+    const bool open = access(port.c_str(), R_OK | W_OK) == 0;
+    detail += " " + port + (open ? "" : " (no permission)");
+    ok = ok && open;
+  }
+  if (!serial.empty() && access(serial.c_str(), R_OK | W_OK) != 0) {
+    return {"devices", false, detail + "; " + serial + " cannot be opened", "Plug the forceps in, or give the port that is there."};
+  }
+  return {"devices", ok, detail, ok ? "" : "Add yourself to the group of the port (usually dialout) and log in again."};
+}
+
+Check check_store(const std::string& folder) {
+  try {
+    const Store store(folder);
+    const auto problems = store.check(false);
+    struct statvfs disk {};
+    const double free_gb = statvfs(folder.c_str(), &disk) == 0
+                               ? 1e-9 * static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize)
+                               : 0.0;
+    std::string detail = folder + ": " + std::to_string(store.list().size()) + " sessions, " + number(free_gb, 1) + " GB free";
+    if (!problems.empty()) return {"store", false, detail + "; " + problems[0].id + ": " + problems[0].what, problems[0].advice};
+    const bool room = free_gb > 0.5;
+    return {"store", room, detail, room ? "" : "Make room on the disk: a session takes a few megabytes a minute."};
+  } catch (const InputError& error) {
+    return {"store", false, error.what(), "Choose a folder that you may write with --store."};
+  }
+}
+
+Check check_viewer(const std::string& folder) {
+  const bool ok = fs::is_regular_file(fs::path(folder) / "index.html");
+  return {"viewer", ok, ok ? folder : folder + " holds no built viewer", ok ? "" : "Run ./filum, which builds it."};
+}
+
+Check check_files(const std::string& root) {
+  std::vector<std::string> problems;
+  const std::size_t n = load_tasks(root, problems).size();
+  const bool ok = problems.empty() && n > 0;
+  return {"files", ok, std::to_string(n) + " tasks in " + root + (ok || problems.empty() ? "" : "; " + problems[0]),
+          ok ? "" : "Restore models/ and curricula/, or give their folder with --root."};
+}
+
+Check check_versions() {
+  return {"versions", true,
+          program_text() + ", Boost " + std::to_string(BOOST_VERSION / 100000) + "." + std::to_string(BOOST_VERSION / 100 % 1000) +
+              ", Eigen " + std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) + "." +
+              std::to_string(EIGEN_MINOR_VERSION) + ", recording format " + std::to_string(kRecordingFormat),
+          ""};
+}
+
+template <class Function>
+Check guarded(const char* name, Function check) {
+  try {
+    return check();
+  } catch (const std::exception& error) {
+    return {name, false, error.what(), "Restore the file named, or give another folder with --root."};
+  }
+}
+
+int run(const DoctorOptions& o) {
+  const std::vector<Check> checks = {
+      check_cores(),
+      check_timer(),
+      guarded("speed", [&] { return check_speed(o.common.root); }),
+      check_devices(o.serial),
+      guarded("store", [&] { return check_store(o.store.empty() ? default_store_folder() : o.store); }),
+      check_viewer(o.viewer),
+      check_files(o.common.root),
+      check_versions(),
+  };
+  const bool ok = std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
+  if (o.common.json) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Check& c : checks) list.push_back({{"name", c.name}, {"ok", c.ok}, {"detail", c.detail}, {"advice", c.advice}});
+    print_json({{"ok", ok}, {"checks", list}});
+  } else {
+    for (const Check& c : checks) {
+      std::printf("%-5s %-9s %s\n", c.ok ? "ok" : "NOT", c.name.c_str(), c.detail.c_str());
+      if (!c.advice.empty()) std::printf("                %s\n", c.advice.c_str());
+    }
+  }
+  return ok ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Action& action) {
+  auto o = std::make_shared<DoctorOptions>();
+  CLI::App* command = app.add_subcommand("doctor", "Check this machine, its devices and the store");
+  command->add_option("--store", o->store, "Folder of the recordings (default: your data folder)");
+  o->viewer = std::string(source_folder()) + "/src/viewer/dist";
+  command->add_option("--viewer", o->viewer, "Folder of the built viewer")->capture_default_str();
+  command->add_option("--serial", o->serial, "Serial port of the forceps");
+  add_common(*command, o->common);
+  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+}
+
+}  // namespace filum

@@ -1,0 +1,50 @@
+// filum export FILE: a recording as tables for other programs.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/options.h"
+#include "cli/session_files.h"
+#include "session/export.h"
+
+namespace filum {
+namespace {
+
+struct ExportOptions {
+  std::string file, format = "csv", folder;
+  bool json = false;
+};
+
+int run(const ExportOptions& o) {
+  const RecordingReader recording(o.file);
+  std::vector<Table> tables = recorded_tables(recording);
+  {
+    const RecordedSetup recorded(recording);
+    World world(recorded.setup().model);
+    tables.push_back(simulated_table(recording, world));
+  }
+  const auto files = o.format == "csv" ? export_csv(tables, recording.meta(), o.folder)
+                                       : export_hdf5(tables, recording.meta(), o.folder);
+  if (o.json) {
+    print_json({{"files", files}});
+  } else {
+    for (const std::string& file : files) std::printf("%s\n", file.c_str());
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Action& action) {
+  auto o = std::make_shared<ExportOptions>();
+  CLI::App* command = app.add_subcommand("export", "Write a recording as CSV or HDF5 with a data dictionary");
+  command->add_option("file", o->file, "Recording")->required();
+  command->add_option("--format", o->format, "csv or hdf5")->check(CLI::IsMember({"csv", "hdf5"}))->capture_default_str();
+  command->add_option("--out", o->folder, "Folder to write to; made if it is not there")->required();
+  command->add_flag("--json", o->json, "Print one JSON document and nothing else");
+  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+}
+
+}  // namespace filum

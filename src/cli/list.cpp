@@ -1,0 +1,52 @@
+// filum list: what there is to run.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/options.h"
+#include "cli/setup.h"
+
+namespace filum {
+namespace {
+
+// The physical effects that the world is made of; each is one header below src/physics.
+constexpr const char* kEffects[] = {"elastic_rod", "rod_contact", "friction", "rod_obstacle", "thread_grasp", "instrument"};
+
+int run(const CommonOptions& o) {
+  using Json = nlohmann::ordered_json;
+  std::vector<std::string> problems;
+  Json tasks = Json::array();
+  Json curricula = Json::array();
+  for (const Task& task : load_tasks(o.root, problems)) {
+    tasks.push_back({{"name", task.name}, {"title", task.title}, {"demonstration_only", task.demonstration_only}});
+    curricula.push_back(task.name);
+  }
+  const auto models = model_names(o.root);
+  for (const std::string& problem : problems) std::fprintf(stderr, "filum: %s\n", problem.c_str());
+  if (o.json) {
+    print_json({{"tasks", tasks}, {"models", models}, {"curricula", curricula}, {"rigs", Json::array()}, {"effects", kEffects}});
+  } else {
+    std::printf("tasks\n");
+    for (const Json& task : tasks) {
+      std::printf("  %-18s %s\n", task["name"].get<std::string>().c_str(), task["title"].get<std::string>().c_str());
+    }
+    std::printf("models\n");
+    for (const std::string& model : models) std::printf("  %s\n", model.c_str());
+    std::printf("effects\n");
+    for (const char* effect : kEffects) std::printf("  %s\n", effect);
+  }
+  return problems.empty() ? kDone : kBadInput;
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, Action& action) {
+  auto o = std::make_shared<CommonOptions>();
+  CLI::App* command = app.add_subcommand("list", "List tasks, models and effects");
+  add_common(*command, *o);
+  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+}
+
+}  // namespace filum

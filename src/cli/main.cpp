@@ -1,0 +1,38 @@
+// The program: reads which subcommand is wanted and hands over to its file.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "base/error.h"
+#include "cli/options.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Filum: a microsurgery skills trainer"};
+  app.name("filum");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", filum::program_text());
+  filum::Action action;
+  filum::add_train(app, action);
+  filum::add_run(app, action);
+  filum::add_replay(app, action);
+  filum::add_score(app, action);
+  filum::add_export(app, action);
+  filum::add_list(app, action);
+  filum::add_doctor(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? filum::kDone : filum::kBadInput;
+  }
+  try {
+    return action.run();
+  } catch (const filum::InputError& error) {
+    std::fprintf(stderr, "filum: %s\n", error.what());
+    return filum::kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "filum: %s\n", error.what());
+    return filum::kFailed;
+  }
+}

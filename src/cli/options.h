@@ -1,0 +1,50 @@
+#pragma once
+// What all subcommands share: where the data is, how results are printed, exit codes. Each subcommand is one file that adds
+// itself to the command line; its callback returns the exit code.
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace filum {
+
+enum ExitCode { kDone = 0, kFailed = 1, kBadInput = 2 };
+
+struct CommonOptions {
+  std::string root;   // folder with models/ and curricula/
+  bool json = false;  // one JSON document on stdout, nothing else
+};
+
+/// Set by the subcommand that was asked for; run by main().
+struct Action {
+  std::function<int()> run;
+};
+
+void add_train(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_replay(CLI::App& app, Action& action);
+void add_score(CLI::App& app, Action& action);
+void add_export(CLI::App& app, Action& action);
+void add_list(CLI::App& app, Action& action);
+void add_validate(CLI::App& app, Action& action);
+void add_bench(CLI::App& app, Action& action);
+void add_doctor(CLI::App& app, Action& action);
+
+/// --root and --json.
+void add_common(CLI::App& command, CommonOptions& options);
+void add_root(CLI::App& command, CommonOptions& options);
+
+/// One line on stdout.
+void print_json(const nlohmann::ordered_json& document);
+
+const char* version();
+/// Program, version and build, as stored in recordings: equal replay is promised within one build.
+std::string program_text();
+/// Folder of the sources that the program was built from.
+const char* source_folder();
+
+}  // namespace filum

@@ -1,0 +1,58 @@
+// filum replay FILE: steps a recording anew and compares every state hash.
+
+#include <CLI/CLI.hpp>
+#include <cinttypes>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/options.h"
+#include "cli/session_files.h"
+
+namespace filum {
+namespace {
+
+struct ReplayOptions {
+  std::string file;
+  bool json = false;
+};
+
+int run(const ReplayOptions& o) {
+  const RecordingReader recording(o.file);
+  const RecordedSetup recorded(recording);
+  World world(recorded.setup().model);
+  const ReplayResult result = replay(recording, world);
+  if (recording.meta().program != program_text()) {
+    std::fprintf(stderr, "filum: recorded by %s, replayed by %s: equal states are promised within one build only\n",
+                 recording.meta().program.c_str(), program_text().c_str());
+  }
+  if (o.json) {
+    nlohmann::ordered_json document = {{"identical", result.identical}, {"first_difference", nullptr}, {"steps", result.steps}};
+    if (result.first_difference) {
+      document["first_difference"] = {{"step", result.first_difference->step}, {"array", result.first_difference->array}};
+    }
+    document["recorded_by"] = recording.meta().program;
+    document["finished"] = recording.finished();
+    print_json(document);
+  } else if (result.identical) {
+    std::printf("identical: %" PRIu64 " steps\n", result.steps);
+  } else if (result.first_difference) {
+    std::printf("first difference at step %" PRIu64 " in array %s\n", result.first_difference->step,
+                result.first_difference->array.c_str());
+  } else {
+    std::printf("the recording holds no step\n");
+  }
+  return result.identical ? kDone : kFailed;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, Action& action) {
+  auto o = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand("replay", "Step a recording anew and compare every state");
+  command->add_option("file", o->file, "Recording")->required();
+  command->add_flag("--json", o->json, "Print one JSON document and nothing else");
+  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+}
+
+}  // namespace filum

@@ -1,0 +1,87 @@
+// filum run TASK: one session without a browser.
+
+#include <CLI/CLI.hpp>
+#include <cinttypes>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/live_session.h"
+#include "cli/options.h"
+#include "cli/session_files.h"
+
+namespace filum {
+namespace {
+
+struct RunOptions {
+  CommonOptions common;
+  std::string task, input = "demo", model, record;
+  bool real_time = false;
+  double longest = 600.0;  // [s]
+};
+
+std::string hash_text_of(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
+  return text;
+}
+
+void print_text(const LiveOutcome& outcome) {
+  const Result& r = outcome.result;
+  std::printf("%s: %s, %s\n", r.title.c_str(), r.finished ? "finished" : "not finished", r.passed ? "passed" : "not passed");
+  std::printf("knot: %s\n", r.knot.knot_class.c_str());
+  std::printf("score %.1f of %.1f\n", r.total, r.max_total);
+  for (const ScoreItem& item : r.items) {
+    std::printf("  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());
+  }
+  for (const std::string& line : r.verdict) std::printf("%s\n", line.c_str());
+  std::printf("%.1f s of scene in %.1f s (real-time factor %.2f), %" PRIu64 " late steps, state %s\n", outcome.scene_seconds,
+              outcome.wall_seconds, outcome.real_time_factor, outcome.overruns, hash_text_of(outcome.state_hash).c_str());
+}
+
+int run(const RunOptions& o) {
+  Setup setup = load_setup(o.common.root, o.task, o.model);
+  InputDevices inputs = open_inputs(o.input, o.common.root, o.task);
+  std::unique_ptr<Recorder> recorder;
+  if (!o.record.empty()) recorder = make_recorder(o.record, setup, inputs.description);
+  LiveOptions options;
+  options.paced = o.real_time || !inputs.scripted;  // hands cannot be hurried
+  options.longest = o.longest;
+  options.recorder = recorder.get();
+  LiveSession session(std::move(setup), std::move(inputs), std::move(options));
+  session.start();
+  const LiveOutcome outcome = session.wait();
+  if (o.common.json) {
+    nlohmann::ordered_json document = result_document(outcome.result);
+    document["real_time_factor"] = outcome.real_time_factor;
+    document["overruns"] = outcome.overruns;
+    document["steps"] = outcome.steps;
+    document["scene_seconds"] = outcome.scene_seconds;
+    document["state_hash"] = hash_text_of(outcome.state_hash);
+    print_json(document);
+  } else {
+    print_text(outcome);
+  }
+  if (recorder && !recorder->status().healthy) {
+    std::fprintf(stderr, "filum: recording %s: %s\n", o.record.c_str(), recorder->status().message.c_str());
+    return kFailed;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto o = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Run a task without a browser and print its score");
+  command->add_option("task", o->task, "Name of the task, e.g. knot-square (see filum list)")->required();
+  command->add_option("--input", o->input, "demo, serial:PATH, a demonstration (*.yaml) or a recording")->capture_default_str();
+  command->add_option("--model", o->model, "Suture model to use instead of the scene's");
+  command->add_option("--record", o->record, "Store the session in this new file");
+  command->add_flag("--real-time", o->real_time, "Keep to the clock instead of running as fast as possible");
+  command->add_option("--longest", o->longest, "End after this much scene time [s]")->check(CLI::Range(0.1, 36000.0))->capture_default_str();
+  add_common(*command, o->common);
+  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+}
+
+}  // namespace filum

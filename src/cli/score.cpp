@@ -1,0 +1,51 @@
+// filum score FILE: replays a recording and scores it anew.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/options.h"
+#include "cli/session_files.h"
+
+namespace filum {
+namespace {
+
+struct ScoreOptions {
+  std::string file;
+  bool json = false;
+};
+
+int run(const ScoreOptions& o) {
+  const RecordingReader recording(o.file);
+  const Rescored rescored = rescore(recording);
+  const Result& r = rescored.result;
+  if (o.json) {
+    nlohmann::ordered_json document = result_document(r);
+    document["replay_identical"] = rescored.replay.identical;
+    print_json(document);
+    return kDone;
+  }
+  if (!rescored.replay.identical) {
+    std::fprintf(stderr, "filum: this build steps the recording differently; the score is of what it computes\n");
+  }
+  std::printf("%s: %s, knot %s, %.1f of %.1f points\n", r.title.c_str(), r.passed ? "passed" : "not passed",
+              r.knot.knot_class.c_str(), r.total, r.max_total);
+  for (const ScoreItem& item : r.items) {
+    std::printf("  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());
+  }
+  for (const std::string& line : r.verdict) std::printf("%s\n", line.c_str());
+  return kDone;
+}
+
+}  // namespace
+
+void add_score(CLI::App& app, Action& action) {
+  auto o = std::make_shared<ScoreOptions>();
+  CLI::App* command = app.add_subcommand("score", "Score a recording anew");
+  command->add_option("file", o->file, "Recording")->required();
+  command->add_flag("--json", o->json, "Print one JSON document and nothing else");
+  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+}
+
+}  // namespace filum

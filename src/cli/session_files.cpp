@@ -1,0 +1,110 @@
+#include "cli/session_files.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "cli/options.h"
+#include "training/result_json.h"
+#include "training/task_session.h"
+#include "world/model.h"
+
+namespace filum {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kModelOverride = "models/override.yaml";
+
+std::string read_whole(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file, "file", "nothing readable", "a model file");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string new_folder() {
+  std::string name = (fs::temp_directory_path() / "filum-recorded-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw InputError(name, "folder", "none", "a temporary folder that may be written");
+  return name;
+}
+
+Setup setup_of(const RecordingReader& recording, const std::string& folder) {
+  recording.write_sources(folder);
+  const std::string model = folder + "/" + kModelOverride;
+  return load_setup(folder, recording.meta().task, fs::exists(model) ? model : "");
+}
+
+std::string message_of(Json result, const std::string& session) {
+  Json message = {{"type", "result"}, {"session", session.empty() ? Json(nullptr) : Json(session)}};
+  for (const char* key : {"task", "title", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths"}) {
+    if (!result.contains(key)) return {};
+    message[key] = std::move(result[key]);
+  }
+  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& setup, const std::string& input,
+                                        const std::string& participant) {
+  const SceneDescription& scene = setup.model->description;
+  RecorderOptions options;
+  options.file = file;
+  options.meta.program = program_text();
+  options.meta.task = setup.task.name;
+  options.meta.participant = participant;
+  options.meta.input = input;
+  options.meta.dt = scene.dt;
+  options.meta.n_tools = scene.n_tools;
+  options.sources = read_sources(setup.root);
+  if (!setup.model_file.empty()) options.sources.push_back({kModelOverride, read_whole(setup.model_file)});
+  return std::make_unique<Recorder>(std::move(options));
+}
+
+RecordedSetup::RecordedSetup(const RecordingReader& recording) : folder_(new_folder()) {
+  try {
+    setup_ = setup_of(recording, folder_);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    throw;
+  }
+}
+
+RecordedSetup::~RecordedSetup() {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+Rescored rescore(const RecordingReader& recording) {
+  const RecordedSetup recorded(recording);
+  World world(recorded.setup().model);
+  TaskSession task(recorded.setup().task, world.description());
+  ReplayResult replayed =
+      replay(recording, world, [&task](const StepRecord&, const Observation& o) { task.observe(o); }, true);
+  return {task.finish(), std::move(replayed)};
+}
+
+Json result_document(const Result& result) {
+  Json document = Json::parse(result_json(result));
+  document.erase("series");
+  document.erase("paths");
+  return document;
+}
+
+std::string result_message(const Result& result, const std::string& session) {
+  return message_of(Json::parse(result_json(result, false)), session);
+}
+
+std::string result_message(const std::string& stored_json, const std::string& session) {
+  Json result = Json::parse(stored_json, nullptr, false);
+  return result.is_object() ? message_of(std::move(result), session) : std::string();
+}
+
+}  // namespace filum

@@ -1,0 +1,53 @@
+#pragma once
+// Between sessions on disk and sessions in memory: recorders for runs, worlds for recordings, scores of recordings.
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "cli/setup.h"
+#include "session/recorder.h"
+#include "session/recording_reader.h"
+#include "session/replay.h"
+#include "training/result.h"
+
+namespace filum {
+
+/// A recorder that stores the session's meta data and all files it was made from. Throws InputError.
+std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& setup, const std::string& input,
+                                        const std::string& participant = "");
+
+/// The scene and the rules a recording was made with, from the files stored in it. The folder with these files lives as long
+/// as this object.
+class RecordedSetup {
+ public:
+  explicit RecordedSetup(const RecordingReader& recording);
+  ~RecordedSetup();
+  RecordedSetup(const RecordedSetup&) = delete;
+  RecordedSetup& operator=(const RecordedSetup&) = delete;
+  const Setup& setup() const { return setup_; }
+
+ private:
+  std::string folder_;
+  Setup setup_;
+};
+
+struct Rescored {
+  Result result;
+  ReplayResult replay;
+};
+
+/// Replays a recording to its end and scores it anew.
+Rescored rescore(const RecordingReader& recording);
+
+/// The keys that `run` and `score` share: result_json() without the curves.
+nlohmann::ordered_json result_document(const Result& result);
+
+/// The viewer's `result` message.
+std::string result_message(const Result& result, const std::string& session);
+/// The same from the JSON that a recording stores; empty if that is no result.
+std::string result_message(const std::string& stored_json, const std::string& session);
+
+}  // namespace filum

@@ -1,0 +1,66 @@
+#include "cli/setup.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string task_file(const std::string& root, const std::string& task) { return root + "/curricula/" + task + "/task.yaml"; }
+
+}  // namespace
+
+std::vector<std::string> task_names(const std::string& root) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(fs::path(root) / "curricula", error)) {
+    const std::string name = entry.path().filename().string();
+    if (fs::is_regular_file(task_file(root, name), error)) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Setup load_setup(const std::string& root, const std::string& task, const std::string& model_file) {
+  const std::vector<std::string> names = task_names(root);
+  if (names.empty()) throw InputError("--root", "curricula", root, "a folder with models/ and curricula/");
+  if (std::find(names.begin(), names.end(), task) == names.end()) {
+    std::string all;
+    for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
+    throw InputError("curricula", "task", task, "one of: " + all);
+  }
+  return {root, model_file, load_model(root, task, model_file), load_task(task_file(root, task))};
+}
+
+std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& problems) {
+  std::vector<Task> tasks;
+  for (const std::string& name : task_names(root)) {
+    try {
+      tasks.push_back(load_task(task_file(root, name)));
+    } catch (const InputError& error) {
+      problems.emplace_back(error.what());
+    }
+  }
+  return tasks;
+}
+
+std::vector<std::string> model_names(const std::string& root) {
+  std::vector<std::string> names;
+  std::error_code error;
+  const fs::path folder = fs::path(root) / "models";
+  for (fs::recursive_directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    if (at->path().extension() == ".yaml") names.push_back(fs::relative(at->path(), folder).replace_extension().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string demonstration_file(const std::string& root, const std::string& task) {
+  return root + "/curricula/" + task + "/demonstration.yaml";
+}
+
+}  // namespace filum

@@ -1,0 +1,34 @@
+#pragma once
+// A task made ready: its scene and its rules, read from models/ and curricula/.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "training/task.h"
+#include "world/world.h"
+
+namespace filum {
+
+struct Setup {
+  std::string root;
+  std::string model_file;  // empty: the scene's own
+  std::shared_ptr<const Model> model;
+  Task task;
+};
+
+/// Throws InputError; an unknown task is answered with the names of those there are.
+Setup load_setup(const std::string& root, const std::string& task, const std::string& model_file = "");
+
+/// Names of the folders below curricula/ that hold a task, in order.
+std::vector<std::string> task_names(const std::string& root);
+
+/// All tasks that can be read; those that cannot are left out and named in `problems`.
+std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& problems);
+
+/// Names of the model files, "suture/10-0-nylon".
+std::vector<std::string> model_names(const std::string& root);
+
+std::string demonstration_file(const std::string& root, const std::string& task);
+
+}  // namespace filum

@@ -1,0 +1,285 @@
+#include "cli/trainer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "base/error.h"
+#include "cli/options.h"
+#include "cli/session_files.h"
+
+namespace filum {
+namespace {
+
+constexpr double kHardestSqueeze = 0.25;  // [rad] beyond closure: 3 N with the instruments' grip stiffness
+constexpr std::size_t kMostCommands = 256;
+
+HelloView hello_of(const TrainerOptions& options) {
+  std::vector<std::string> problems;
+  HelloView hello;
+  hello.version = version();
+  for (const Task& task : load_tasks(options.root, problems)) {
+    hello.tasks.push_back({task.name, task.title, task.description, task.demonstration_only});
+  }
+  for (const std::string& problem : problems) std::fprintf(stderr, "filum: task left out: %s\n", problem.c_str());
+  hello.inputs = {"pointer", "demo"};
+  if (!options.serial_port.empty()) {
+    hello.inputs.emplace_back("device");
+    hello.devices.push_back({"serial " + options.serial_port, "waiting", 0, 0, 0, 0});
+  }
+  return hello;
+}
+
+}  // namespace
+
+double grip_angle_of(double grip, double widest) noexcept {
+  if (grip < kClosedGrip) return widest * (1.0 - grip / kClosedGrip);
+  return -kHardestSqueeze * (grip - kClosedGrip) / (1.0 - kClosedGrip);
+}
+
+TaskView task_view_of(const TaskStatus& s) {
+  TaskView view{s.step_name, s.step_index, s.steps, s.hint, s.elapsed, s.done, {}};
+  for (const TaskWarning& w : s.warnings) view.warnings.push_back({w.level, w.text, w.code});
+  return view;
+}
+
+std::vector<DeviceView> device_views_of(const HapticReport& hands, const std::vector<std::string>& names) {
+  std::vector<DeviceView> views;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const DeviceHealth& h = hands.devices[i];
+    views.push_back({names[i], name_of(h.state), h.received, h.lost, h.corrupt, h.rejected});
+  }
+  return views;
+}
+
+Trainer::Trainer(TrainerOptions options) : options_(std::move(options)) {
+  ServerOptions server;
+  server.address = options_.address;
+  server.port = options_.port;
+  server.viewer_folder = options_.viewer_folder;
+  server.hello = hello_of(options_);
+  for (const TaskInfoView& task : server.hello.tasks) titles_[task.name] = task.title;
+  server_ = std::make_unique<Server>(std::move(server), *this);
+  open_store();
+  publish_state("idle");
+  server_->start();
+}
+
+Trainer::~Trainer() {
+  stop_all();
+  server_->stop();
+}
+
+void Trainer::open_store() {
+  try {
+    store_.emplace(options_.store_folder);
+  } catch (const InputError& error) {
+    store_warning_ = std::string("Sessions are NOT being stored: ") + error.what();
+  }
+  view_.warning = store_warning_;
+}
+
+void Trainer::publish_state(const std::string& state) {
+  view_.state = state;
+  server_->publish_trainer(view_);
+}
+
+// ---- server's thread
+
+void Trainer::command(const ClientMessage& message) {
+  if (const auto* pointer = std::get_if<PointerMessage>(&message)) return push(*pointer);
+  const std::lock_guard lock(commands_mutex_);
+  if (commands_.size() >= kMostCommands) return;
+  commands_.push_back(message);
+  commands_changed_.notify_one();
+}
+
+void Trainer::controlled(bool by_somebody) {
+  const std::lock_guard lock(pointer_mutex_);
+  somebody_in_control_ = by_somebody;
+  if (pointer_ == nullptr) return;
+  by_somebody ? pointer_->connected() : pointer_->disconnected();
+}
+
+void Trainer::push(const PointerMessage& m) {
+  const std::lock_guard lock(pointer_mutex_);
+  if (pointer_ == nullptr) return;
+  DeviceSample sample;
+  sample.tool = m.tool;
+  sample.device_time_us = static_cast<std::int64_t>(m.time * 1e6);
+  sample.has_pose = sample.has_grip_angle = true;
+  sample.X_WD = m.X_WD;
+  sample.grip_angle = grip_angle_of(m.grip, widest_[static_cast<std::size_t>(m.tool)]);
+  sample.buttons = m.buttons;
+  pointer_->push(sample);  // what it refuses it counts, and the page shows it
+}
+
+void Trainer::set_pointer(LiveSession* session) {
+  const std::lock_guard lock(pointer_mutex_);
+  pointer_ = session == nullptr ? nullptr : session->pointer();
+  if (pointer_ == nullptr) return;
+  for (std::size_t i = 0; i < widest_.size(); ++i) widest_[i] = session->scene().tools[i].max_angle;
+  somebody_in_control_ ? pointer_->connected() : pointer_->disconnected();
+}
+
+// ---- thread of run()
+
+void Trainer::run(const std::atomic<bool>& quit) {
+  while (!quit.load()) {
+    std::optional<ClientMessage> next;
+    {
+      std::unique_lock lock(commands_mutex_);
+      commands_changed_.wait_for(lock, std::chrono::milliseconds(100), [this] { return !commands_.empty(); });
+      if (!commands_.empty()) {
+        next = std::move(commands_.front());
+        commands_.pop_front();
+      }
+    }
+    look_after();
+    if (next) carry_out(*next);
+  }
+  stop_all();
+}
+
+void Trainer::look_after() {
+  if (session_ && session_->over()) end_session();
+  if (session_) warn_of_recording();
+}
+
+void Trainer::warn_of_recording() {
+  if (!recorder_) return;
+  const RecorderStatus status = recorder_->status();
+  const std::string warning = status.healthy ? std::string() : "The recording is in trouble: " + status.message;
+  if (warning == view_.warning) return;
+  view_.warning = warning;
+  publish_state(view_.state);
+}
+
+void Trainer::carry_out(const ClientMessage& message) {
+  try {
+    if (const auto* start = std::get_if<StartMessage>(&message)) start_task(*start);
+    if (std::holds_alternative<StopMessage>(message)) stop_all();
+    if (const auto* open = std::get_if<ReplayOpenMessage>(&message)) open_replay(open->session);
+    if (!replay_) return;
+    if (std::holds_alternative<PlayMessage>(message)) replay_->play(true);
+    if (std::holds_alternative<PauseMessage>(message)) replay_->play(false);
+    if (const auto* seek = std::get_if<SeekMessage>(&message)) replay_->seek(seek->time);
+  } catch (const InputError& error) {
+    server_->publish_error({"bad-input", error.what(), "Expected " + error.expected + "."});
+    if (!session_ && !replay_) publish_state("idle");
+  } catch (const std::exception& error) {
+    server_->publish_error({"failed", error.what(), "Nothing recorded is lost. Try again; filum doctor tells more."});
+    if (!session_ && !replay_) publish_state("idle");
+  }
+}
+
+void Trainer::stop_all() {
+  if (session_) {
+    session_->request_stop();
+    end_session();
+  }
+  if (replay_) {
+    replay_.reset();
+    publish_state("idle");
+  }
+}
+
+void Trainer::start_task(const StartMessage& start) {
+  stop_all();
+  view_.task = start.task;
+  view_.input = start.input;
+  view_.recording = false;
+  view_.session.clear();
+  publish_state("loading");
+  Setup setup = load_setup(options_.root, start.task);
+  if (start.input == "device" && options_.serial_port.empty()) {
+    throw InputError("start", "input", "device", "a trainer started with --serial PATH");
+  }
+  InputDevices inputs = start.input == "demo" ? open_inputs("demo", options_.root, start.task)
+                                              : open_live_inputs(start.input == "device" ? options_.serial_port : "", options_.root);
+  start_session(start, std::move(setup), std::move(inputs));
+}
+
+void Trainer::begin_recording(const StartMessage& start, const Setup& setup, const std::string& input) {
+  recorder_.reset();
+  view_.warning = store_warning_;
+  if (!store_) return;
+  try {
+    const std::lock_guard lock(store_mutex_);
+    const StoreEntry entry = store_->begin(start.task, start.code);
+    recorder_ = make_recorder(store_->file_of(entry.id), setup, input, start.code);
+    view_.session = entry.id;
+    view_.recording = true;
+  } catch (const std::exception& error) {
+    view_.session.clear();
+    view_.warning = std::string("This session is NOT being stored: ") + error.what();
+  }
+}
+
+void Trainer::start_session(const StartMessage& start, Setup setup, InputDevices inputs) {
+  begin_recording(start, setup, inputs.description);
+  LiveOptions options;
+  options.recorder = recorder_.get();
+  options.show = [server = server_.get()](const LiveView& v) {
+    const TaskView task = task_view_of(v.status);
+    server->publish_frame(frame_body(v.observation, &task, device_views_of(v.hands, v.device_names)),
+                          v.observation.real_time_factor, v.observation.overruns);
+  };
+  options.show_event = [server = server_.get()](const TaskEvent& e) {
+    server->publish_event({e.time, e.name, e.tool, e.value, e.unit, e.text});
+  };
+  session_ = std::make_unique<LiveSession>(std::move(setup), std::move(inputs), std::move(options));
+  server_->publish_scene(session_->scene());
+  session_->start();
+  set_pointer(session_.get());
+  publish_state("running");
+}
+
+void Trainer::end_session() {
+  set_pointer(nullptr);
+  const LiveOutcome outcome = session_->wait();
+  session_.reset();
+  const Result& r = outcome.result;
+  if (recorder_) {
+    const RecorderStatus status = recorder_->status();
+    if (!status.healthy) view_.warning = "The recording is incomplete: " + status.message;
+    try {
+      const std::lock_guard lock(store_mutex_);
+      store_->finish(view_.session, ScoreRecord{r.passed, r.total, r.seconds, ""});
+    } catch (const std::exception& error) {
+      view_.warning = std::string("The session is stored, but not entered in the index: ") + error.what();
+    }
+  }
+  recorder_.reset();
+  view_.recording = false;
+  server_->publish_result(result_message(r, view_.session));
+  publish_state("ended");
+}
+
+void Trainer::open_replay(const std::string& session) {
+  stop_all();
+  std::string file;
+  {
+    const std::lock_guard lock(store_mutex_);
+    const auto entry = store_ ? store_->find(session) : std::nullopt;
+    if (!entry) throw InputError("store", "session", session, "the identifier of a stored session");
+    file = store_->file_of(entry->id);
+    view_.task = entry->task;
+  }
+  view_.input.clear();
+  view_.session = session;
+  publish_state("loading");
+  replay_ = std::make_unique<ReplaySession>(
+      file, session,
+      [server = server_.get()](const Observation& o, const TaskView& task) {
+        server->publish_frame(frame_body(o, &task, {}), 1.0, 0);
+      },
+      [server = server_.get()](const ReplayView& replay) { server->publish_replay(replay); });
+  server_->publish_scene(replay_->scene());
+  const std::string result = result_message(replay_->stored_score(), session);
+  if (!result.empty()) server_->publish_result(result);
+  publish_state("replay");
+  replay_->start();
+}
+
+}  // namespace filum

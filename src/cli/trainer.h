@@ -1,0 +1,95 @@
+#pragma once
+// The trainer behind the browser: carries out what the browser in control asks for, one session or replay at a time, and
+// records every session in the store. Commands wait in a queue and are carried out by the thread that calls run(); only the
+// pointer's poses go straight to the device.
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/live_session.h"
+#include "cli/replay_session.h"
+#include "server/server.h"
+#include "session/store.h"
+
+namespace filum {
+
+struct TrainerOptions {
+  std::string root;
+  std::string serial_port;        // empty: no forceps
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8137;
+  std::string viewer_folder;
+  std::string store_folder;
+};
+
+class Trainer final : public ServerHost {
+ public:
+  /// Opens the store and the port. A store that cannot be written is told and warned of on every page, training goes on.
+  explicit Trainer(TrainerOptions options);
+  ~Trainer() override;
+
+  std::string url() const { return server_->url(); }
+  const std::string& store_warning() const { return store_warning_; }
+
+  /// Serves until `quit` becomes true; looks at it ten times a second.
+  void run(const std::atomic<bool>& quit);
+
+  // ServerHost, called by the server's thread.
+  void command(const ClientMessage& message) override;
+  void controlled(bool by_somebody) override;
+  std::optional<std::string> api(std::string_view path) override;
+
+ private:
+  void open_store();
+  void carry_out(const ClientMessage& message);
+  void look_after();
+  void start_task(const StartMessage& start);
+  void start_session(const StartMessage& start, Setup setup, InputDevices inputs);
+  void begin_recording(const StartMessage& start, const Setup& setup, const std::string& input);
+  void end_session();
+  void open_replay(const std::string& session);
+  void stop_all();
+  void push(const PointerMessage& message);
+  void set_pointer(LiveSession* session);
+  void warn_of_recording();
+  void publish_state(const std::string& state);
+
+  TrainerOptions options_;
+  std::mutex store_mutex_;              // the store is used by the server's thread and by run()'s
+  std::optional<Store> store_;
+  std::string store_warning_;
+  std::map<std::string, std::string> titles_;  // by task; constant
+  std::unique_ptr<Server> server_;
+  TrainerView view_;                    // of run()'s thread
+
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<LiveSession> session_;
+  std::unique_ptr<ReplaySession> replay_;
+
+  std::mutex pointer_mutex_;
+  PointerDevice* pointer_ = nullptr;    // guarded by pointer_mutex_, as the two below
+  std::array<double, 3> widest_{};      // [rad], opening of each tool
+  bool somebody_in_control_ = false;
+
+  std::mutex commands_mutex_;
+  std::condition_variable commands_changed_;
+  std::deque<ClientMessage> commands_;
+};
+
+/// Opening that a grip of 0 (open) to 1 (squeezed) commands [rad]: closed at kClosedGrip, beyond that the jaws squeeze.
+double grip_angle_of(double grip, double widest) noexcept;
+inline constexpr double kClosedGrip = 0.6;
+
+/// Everything of a live session that a frame shows besides the observation.
+TaskView task_view_of(const TaskStatus& status);
+std::vector<DeviceView> device_views_of(const HapticReport& hands, const std::vector<std::string>& names);
+
+}  // namespace filum

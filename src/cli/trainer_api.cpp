@@ -1,0 +1,66 @@
+// GET /api/sessions... : what the store holds, in the words of messages.schema.json.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "cli/session_files.h"
+#include "cli/trainer.h"
+
+namespace filum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json info_json(const StoreEntry& e, const std::string& title) {
+  return {{"id", e.id},
+          {"task", e.task},
+          {"title", title},
+          {"input", ""},
+          {"code", e.participant},
+          {"started", e.started_utc},
+          {"seconds", e.seconds},
+          {"finished", e.finished},
+          {"passed", e.scored ? Json(e.passed) : Json(nullptr)},
+          {"total", e.scored ? Json(e.total) : Json(nullptr)}};
+}
+
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace
+
+std::optional<std::string> Trainer::api(std::string_view path) {
+  constexpr std::string_view kSessions = "/api/sessions";
+  if (!path.starts_with(kSessions)) return std::nullopt;
+  path.remove_prefix(kSessions.size());
+  const std::lock_guard lock(store_mutex_);
+  const auto title_of = [this](const std::string& task) {
+    const auto title = titles_.find(task);
+    return title == titles_.end() ? task : title->second;
+  };
+  if (path.empty()) {
+    Json list = Json::array();
+    if (store_) {
+      for (const StoreEntry& entry : store_->list()) list.push_back(info_json(entry, title_of(entry.task)));
+    }
+    return text_of({{"sessions", list}});
+  }
+  path.remove_prefix(1);
+  const bool series = path.ends_with("/series");
+  const std::string id(series ? path.substr(0, path.size() - std::string_view("/series").size()) : path);
+  const auto entry = store_ ? store_->find(id) : std::nullopt;
+  if (!entry) return std::nullopt;
+  Json result = nullptr;
+  try {
+    const RecordingReader recording(store_->file_of(entry->id));
+    const std::string message = recording.score() ? result_message(recording.score()->json, entry->id) : "";
+    if (!message.empty()) result = Json::parse(message);
+  } catch (const InputError&) {
+    // A session that is running or damaged has no result to show; the store's check names the damage.
+  }
+  if (!series) return text_of({{"session", info_json(*entry, title_of(entry->task))}, {"result", result}});
+  if (result.is_null()) return text_of({{"series", Json::array()}, {"paths", Json::array()}});
+  return text_of({{"series", result["series"]}, {"paths", result["paths"]}});
+}
+
+}  // namespace filum
