@@ -1,0 +1,5 @@
+if(TARGET filum)
+  add_test(NAME cli.program COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/program_test.sh $<TARGET_FILE:filum>)
+  set_tests_properties(cli.program PROPERTIES TIMEOUT 600)
+endif()
+filum_test(cli/pacing)
