@@ -1,0 +1,3 @@
+foreach(name elastic_rod friction)
+  filum_test(physics/${name})
+endforeach()
