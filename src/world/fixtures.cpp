@@ -7,15 +7,18 @@ namespace filum {
 void add_fixtures(const Model& model, RodObstacles& obstacles) {
   const int body = static_cast<int>(obstacles.bodies.size());
   obstacles.bodies.emplace_back();
-  for (const PostShape* bar : {&model.description.post, &model.description.base}) {
+  auto add_bar = [&](const PostShape& bar) {
     Obstacle o;
     o.body = body;
-    o.a_B = bar->p_W - bar->half_length * bar->axis_W;
-    o.b_B = bar->p_W + bar->half_length * bar->axis_W;
-    o.r_a = o.r_b = bar->radius;
+    o.a_B = bar.p_W - bar.half_length * bar.axis_W;
+    o.b_B = bar.p_W + bar.half_length * bar.axis_W;
+    o.r_a = o.r_b = bar.radius;
     o.friction = model.post_friction;
     obstacles.obstacles.push_back(o);
-  }
+  };
+  add_bar(model.description.post);
+  add_bar(model.description.base);
+  for (const PostShape& lip : model.lips) add_bar(lip);
   Obstacle sheet;
   sheet.kind = Obstacle::Kind::plane;
   sheet.body = body;

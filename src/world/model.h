@@ -15,6 +15,7 @@ struct Model {
   SceneDescription description;
   RodMaterial thread;
   ContactMaterial contact;
+  std::vector<PostShape> lips;     // thin bars along the mouth of the slit: they keep the thread's direction
   double post_friction = 0.3;      // [-], thread on the post and the sheet
   double jaw_friction = 0.15;      // [-], thread on the outside of polished jaws
   Points thread_path;              // [m], 3 x n, first shape of the thread, short end first

@@ -166,6 +166,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   m->thread_path = read_thread_path(thread, m->resolution.longest);
   d.post = read_bar(scene.map("post"));
   d.base = read_bar(scene.map("base"));
+  for (const YamlNode& lip : scene.items_or_none("lips")) m->lips.push_back(read_bar(lip));
   d.has_post = true;
   d.floor_height = scene.quantity("floor", "mm");
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
