@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/pose.h"
 
@@ -37,34 +38,45 @@ inline SegmentPair closest_points(const Vec3& p0, const Vec3& p1, const Vec3& q0
   return r;
 }
 
-/// Closest points of a segment p0-p1 and the surface of a tapered bar (axis q0-q1, radius r0 at q0, r1 at q1): minimises
-/// distance of the axes minus radius, so that the gap's derivative is along `d` whatever the taper.
+/// Closest points of a segment p0-p1 and the surface of a tapered bar (axis q0-q1, radius r0 at q0, r1 at q1, longer than it
+/// tapers): minimises distance of the axes minus radius, so that the gap's derivative is along `d` whatever the taper.
 /// At the optimum dD/dt = r1 - r0; with D(t)^2 = D0^2 + k^2 (t - t0)^2 that puts t off the closest point t0 of the axes by
-/// (r1 - r0) D0 / (k sqrt(k^2 - (r1 - r0)^2)).
+/// (r1 - r0) D0 / (k sqrt(k^2 - (r1 - r0)^2)). The gap is convex in (s, t): if its optimum is outside, the least on the
+/// border of the square is the answer.
 inline SegmentPair closest_to_bar(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double r0, double r1) noexcept {
-  SegmentPair c = closest_points(p0, p1, q0, q1);
   const double taper = r1 - r0;
-  if (taper == 0.0) return c;
-  const Vec3 u = p1 - p0, v = q1 - q0;
+  const Vec3 u = p1 - p0, v = q1 - q0, w = p0 - q0;
   const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v);
-  for (int k = 0; k < 2; ++k) {  // again if the shift takes the segment's point to its end
-    const bool inside = c.s > 0.0 && c.s < 1.0;
-    const double k2 = inside ? e - b * b / a : e;
-    if (k2 <= 1.01 * taper * taper) return c;
-    // Axis parameter nearest to the segment's line, or to its end.
-    const Vec3 w = (inside ? p0 : Vec3(p0 + c.s * u)) - q0;
-    const double t0 = inside ? (v.dot(w) - b * u.dot(w) / a) / k2 : v.dot(w) / e;
-    Vec3 d0 = w - t0 * v;
-    if (inside) d0 -= u.dot(d0) / a * u;
-    c.t = std::clamp(t0 + taper * d0.norm() / std::sqrt(k2 * (k2 - taper * taper)), 0.0, 1.0);
-    const double s = std::clamp(u.dot(q0 + c.t * v - p0) / a, 0.0, 1.0);
-    const bool same = (s > 0.0 && s < 1.0) == inside;
-    c.s = s;
-    if (same) break;
+  if (taper == 0.0 || e <= 1.01 * taper * taper) return closest_points(p0, p1, q0, q1);
+  const auto along_bar = [&](const Vec3& from_q0, double k2, const Vec3& across_u) {  // t, unbounded
+    const double t0 = across_u.dot(from_q0) / k2;
+    Vec3 d0 = from_q0 - t0 * v;
+    if (k2 != e) d0 -= u.dot(d0) / a * u;
+    return t0 + taper * d0.norm() / std::sqrt(k2 * (k2 - taper * taper));
+  };
+  const auto along_segment = [&](double t) { return u.dot(t * v - w) / a; };
+  const auto pair_at = [&](double s, double t) {
+    const Vec3 d = w + s * u - t * v;
+    return SegmentPair{s, t, d, d.norm()};
+  };
+  const double k2 = e - b * b / a;
+  if (k2 > 1.01 * taper * taper) {
+    const double t = along_bar(w, k2, v - b / a * u), s = along_segment(t);
+    if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0) return pair_at(s, t);
   }
-  c.d = p0 + c.s * u - q0 - c.t * v;
-  c.distance = c.d.norm();
-  return c;
+  SegmentPair best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double end : {0.0, 1.0}) {
+    const SegmentPair at_segment_end = pair_at(end, std::clamp(along_bar(w + end * u, e, v), 0.0, 1.0));
+    const SegmentPair at_bar_end = pair_at(std::clamp(along_segment(end), 0.0, 1.0), end);
+    for (const SegmentPair& c : {at_segment_end, at_bar_end}) {
+      const double gap = c.distance - r0 - c.t * taper;
+      if (gap >= least) continue;
+      least = gap;
+      best = c;
+    }
+  }
+  return best;
 }
 
 }  // namespace filum

@@ -61,7 +61,7 @@ TEST(SegmentDistance, TaperedBarEqualsBruteForceSearch) {
     const SegmentPair c = closest_to_bar(s.p0, s.p1, s.q0, s.q1, 0.02, 0.10);
     const double gap = c.distance - (1 - c.t) * 0.02 - c.t * 0.10;
     if (c.distance < 0.1) continue;  // axes that meet have no normal
-    EXPECT_NEAR(gap, least_gap(s, 0.02, 0.10), 2e-3) << trial;
+    EXPECT_NEAR(gap, least_gap(s, 0.02, 0.10), 1e-4) << trial;
   }
 }
 
