@@ -1,6 +1,7 @@
 // The program: reads which subcommand is wanted and hands over to its file.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -21,6 +22,12 @@ int main(int argc, char** argv) {
   filum::add_export(app, action);
   filum::add_list(app, action);
   filum::add_doctor(app, action);
+  const auto subcommands = app.get_subcommands([](CLI::App*) { return true; });
+  const auto named = [&](const CLI::App* sub) { return sub->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && std::none_of(subcommands.begin(), subcommands.end(), named)) {
+    std::fprintf(stderr, "filum: subcommand: found %s, expected one of those that `filum --help` lists\n", argv[1]);
+    return filum::kBadInput;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,7 +1,13 @@
 // The whole program: the real trainer, the built viewer, Chromium. FILUM_BIN names the program.
+import { existsSync } from "node:fs";
+import { fileURLToPath } from "node:url";
 import { cuttableLine, fieldColours, hasTrainer, openPage, startTrainer, trainerProgram, until, type Opened, type Trainer } from "./browser";
 
 if (!hasTrainer) console.warn(`\n*** The tests of the whole program are SKIPPED: FILUM_BIN=${trainerProgram || "(not set)"} is no program. ***\n`);
+
+// Without a demonstration script there is nothing to show; said aloud, because the whole-task test is then not run.
+const hasDemonstration = existsSync(fileURLToPath(new URL("../../curricula/knot-square/demonstration.yaml", import.meta.url)));
+if (!hasDemonstration) console.warn("\n*** The test of a whole demonstration is SKIPPED: curricula/knot-square/demonstration.yaml is not there. ***\n");
 
 const kWholeTask = 1200; // [s], a demonstration on a busy machine without a graphics chip
 
@@ -19,7 +25,7 @@ describe.skipIf(!hasTrainer)("trainer", () => {
     await until(opened.frame, (frame) => frame !== undefined && frame.time > 0, "the first frames");
   }
 
-  it("shows a demonstration from the task list to the replay", { timeout: 1000 * (kWholeTask + 300) }, async () => {
+  it.skipIf(!hasDemonstration)("shows a demonstration from the task list to the replay", { timeout: 1000 * (kWholeTask + 300) }, async () => {
     opened = await openPage(trainer.address);
     const { page } = opened;
     await start("demo");
