@@ -62,16 +62,16 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
     contact_.update(x_, material.radius, contact_material);
     obstacles.update(x_, material.radius, contact_material);
     assemble_gradient(s, o);
-    summary.residual = gradient_.leftCols(s.n).topRows<3>().cwiseAbs().maxCoeff();
-    const double moment = gradient_.leftCols(s.n).row(3).cwiseAbs().maxCoeff() / material.radius;
-    if (!std::isfinite(summary.residual)) break;
+    summary.residual = gradient_.leftCols(s.n).topRows<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+    const double moment = gradient_.leftCols(s.n).row(3).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / material.radius;
+    if (!std::isfinite(summary.residual + moment)) break;
     summary.converged = summary.arrived && std::max(summary.residual, 0.1 * moment) < std::max(o.force_tolerance, o.relative_tolerance * force_scale(s));
     if (summary.converged || summary.iterations == o.max_iterations) break;
     if (!direction(s, o, summary)) break;
     advance(s, memory, o);
   }
   restore_rest(s);
-  summary.sound = std::isfinite(summary.residual) && x_.leftCols(s.n).allFinite();
+  summary.sound = std::isfinite(summary.residual) && theta_.head(s.n).allFinite() && x_.leftCols(s.n).allFinite();
   if (summary.sound) {
     finish(s, memory, o);
   } else {

@@ -97,7 +97,7 @@ bool RodContact::find_pairs(const RodState& s, const Points& x, double radius, d
       for (int i = a * kChunk; i < std::min(edges, (a + 1) * kChunk); ++i) {
         const Vec3 low = x.col(i).cwiseMin(x.col(i + 1)), high = x.col(i).cwiseMax(x.col(i + 1));
         for (int j = std::max(i + 2, b * kChunk); j < std::min(edges, (b + 1) * kChunk); ++j) {
-          if (arc_[j] - arc_[i + 1] < 4.0 * radius) continue;
+          if (arc_[j] - arc_[i + 1] < 4.0 * radius || s.alive[i] == 0 || s.alive[j] == 0) continue;
           if (apart(low, high, x.col(j).cwiseMin(x.col(j + 1)), x.col(j).cwiseMax(x.col(j + 1)))) continue;
           if (measure(x, i, j).distance > near) continue;
           if (pairs_.size() == pairs_.capacity()) {

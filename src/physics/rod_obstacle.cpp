@@ -53,6 +53,7 @@ void RodObstacles::find_touches(const RodState& s, const Points& x, double radiu
   }
   double arc = s.arc_start;
   for (int j = 0; j + 1 < s.n; arc += s.rest_length[j++]) {
+    if (s.alive[j] == 0) continue;
     const Vec3 low = x.col(j).cwiseMin(x.col(j + 1)), high = x.col(j).cwiseMax(x.col(j + 1));
     for (int k = 0; k < static_cast<int>(obstacles.size()); ++k) {
       const Obstacle& o = obstacles[k];

@@ -149,6 +149,7 @@ int adapt_resolution(const ResolutionOptions& o, int capacity, double radius, co
       renumber(memory.self, j - 1, -1, true);
       renumber(memory.obstacle, j - 1, -1, false);
       ++changes;
+      --j;  // a neighbour must not go in the same step: two jumps would add up
     }
   }
   return changes;

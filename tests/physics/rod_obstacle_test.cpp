@@ -1,0 +1,134 @@
+#include "physics/rod_obstacle.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/implicit_rod.h"
+
+namespace filum {
+namespace {
+
+constexpr double kFriction = 0.3, kGravity = 9.81;
+
+RodMaterial nylon() {
+  RodMaterial m;
+  m.internal_friction = 0.01;
+  return m;
+}
+
+/// A straight 10 mm thread `height` above a horizontal sheet.
+struct Sheet {
+  RodMaterial m = nylon();
+  ContactMaterial c;
+  ImplicitRod rod{m, c, 21};
+  RodState s;
+  RodMemory memory = rod.make_memory();
+  RodStepOptions o;
+
+  explicit Sheet(double height) {
+    Points x = Points::Zero(3, 21);
+    for (int i = 0; i < 21; ++i) x.col(i) = Vec3(0.5e-3 * i, 0, height + m.radius);
+    s = RodState::from_nodes(x, 21);
+    rod.obstacles.bodies.emplace_back();
+    Obstacle plane;
+    plane.kind = Obstacle::Kind::plane;
+    plane.friction = kFriction;
+    rod.obstacles.obstacles.push_back(plane);
+  }
+  double weight() const { return m.mass_per_length() * 10e-3 * kGravity; }
+  void load_along_x(double total) {
+    rod.boundary.load.row(0).leftCols(21).setConstant(total / 20.0);
+    rod.boundary.load(0, 0) = rod.boundary.load(0, 20) = total / 40.0;
+  }
+  bool run(int steps) {
+    bool converged = true;
+    for (int k = 0; k < steps; ++k) converged = rod.step(s, memory, o).converged && converged;
+    return converged;
+  }
+};
+
+TEST(RodObstacle, ThreadDroppedOnTheSheetRestsWithItsWeight) {
+  Sheet sheet(0.2e-3);
+  sheet.run(500);
+  EXPECT_NEAR(sheet.rod.obstacles.bodies[0].force.z(), -sheet.weight(), 1e-3 * sheet.weight());
+  EXPECT_NEAR(sheet.rod.obstacles.bodies[0].force.head<2>().norm(), 0.0, 1e-3 * sheet.weight());
+  EXPECT_LT(sheet.s.v.cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_NEAR(sheet.s.x.row(2).minCoeff(), sheet.m.radius, 1e-9);
+  EXPECT_NEAR(sheet.s.x.row(2).maxCoeff(), sheet.m.radius, 1e-9);
+}
+
+TEST(RodObstacle, StaysUnderALoadBelowTheLimitOfFriction) {
+  Sheet sheet(0.0);
+  sheet.run(200);
+  sheet.load_along_x(0.95 * kFriction * sheet.weight());
+  sheet.run(500);
+  const Points soon = sheet.s.x;
+  sheet.run(2000);
+  EXPECT_LT((sheet.s.x - soon).cwiseAbs().maxCoeff(), 1e-11);  // 2 s
+}
+
+TEST(RodObstacle, AcceleratesUnderALoadAboveTheLimitOfFriction) {
+  Sheet sheet(0.0);
+  sheet.rod.material.drag = 0.0;
+  sheet.run(200);
+  sheet.load_along_x(1.5 * kFriction * sheet.weight());
+  sheet.run(20);
+  const double before = sheet.s.v.row(0).mean();
+  sheet.run(50);
+  const double acceleration = (sheet.s.v.row(0).mean() - before) / (50 * sheet.o.dt);
+  EXPECT_NEAR(acceleration, 0.5 * kFriction * kGravity, 0.01 * kGravity);
+}
+
+TEST(RodObstacle, BarDrivenFastIntoTheThreadTakesItAlong) {
+  const RodMaterial m = nylon();
+  ImplicitRod rod(m, ContactMaterial(), 21);
+  Points x = Points::Zero(3, 21);
+  for (int i = 0; i < 21; ++i) x.col(i) = Vec3(0.5e-3 * i, 0, 0);
+  RodState s = RodState::from_nodes(x, 21);
+  RodMemory memory = rod.make_memory();
+  rod.obstacles.bodies.emplace_back();
+  Obstacle bar;
+  bar.a_B = Vec3(5e-3, 0, -3e-3);
+  bar.b_B = Vec3(5e-3, 0, 3e-3);
+  bar.r_a = bar.r_b = 0.1e-3;
+  rod.obstacles.obstacles.push_back(bar);
+  RodStepOptions o;
+  o.gravity.setZero();
+  ObstacleBody& body = rod.obstacles.bodies[0];
+  body.X_start.p = body.X_end.p = Vec3(0, -0.5e-3, 0);
+  for (int k = 0; k < 50; ++k) {  // 1 m/s: five bar diameters a step
+    body.X_start = body.X_end;
+    body.X_end.p.y() += 1e-3;
+    rod.step(s, memory, o);
+    const double bar_y = body.X_now.p.y();
+    ASSERT_GT(s.x(1, 10), bar_y) << "the bar passed through, step " << k;
+  }
+  EXPECT_GT(s.x(1, 10), 40e-3);
+}
+
+TEST(RodObstacle, StretchHeldInTheJawsAndPartedEdgesAreNotTouched) {
+  RodObstacles o(50);
+  o.bodies.emplace_back();
+  Obstacle bar;
+  bar.a_B = Vec3(5e-3, -1e-3, 0);
+  bar.b_B = Vec3(5e-3, 1e-3, 0);
+  bar.r_a = bar.r_b = 0.1e-3;
+  o.obstacles.push_back(bar);
+  Points x = Points::Zero(3, 21);
+  for (int i = 0; i < 21; ++i) x.col(i) = Vec3(0.5e-3 * i, 0, 0);
+  RodState s = RodState::from_nodes(x, 21);
+  o.find_touches(s, x, 12.5e-6, 10e-6);
+  EXPECT_FALSE(o.touches().empty());
+  s.alive[9] = s.alive[10] = 0;
+  o.find_touches(s, x, 12.5e-6, 10e-6);
+  EXPECT_TRUE(o.touches().empty()) << "a parted edge is not there";
+  s.alive.setOnes();
+  o.obstacles[0].ignore_from = 4e-3;
+  o.obstacles[0].ignore_to = 6e-3;
+  o.find_touches(s, x, 12.5e-6, 10e-6);
+  EXPECT_TRUE(o.touches().empty());
+}
+
+}  // namespace
+}  // namespace filum
