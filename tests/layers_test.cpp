@@ -25,7 +25,8 @@ const std::map<std::string, std::vector<std::string>> kMayUse = {
     {"training", {"base", "world/observation.h"}},
     {"session", {"base", "world"}},
     {"server", {"base", "world/observation.h", "training", "session"}},
-    {"cli", {"base", "collision", "devices", "physics", "world", "haptics", "training", "session", "server"}},
+    {"evidence", {"base", "collision", "physics", "world"}},
+    {"cli", {"base", "collision", "devices", "physics", "world", "haptics", "training", "session", "server", "evidence"}},
 };
 
 /// What is wrong with `#include "included"` in a file of `folder`; nothing if it is allowed.

@@ -1,0 +1,25 @@
+#pragma once
+// How the files of problems enter theirs in the list.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "evidence/validation.h"
+
+namespace filum {
+
+/// `stated` says everything but the result; `solve` fills got and, where it has one, order.
+struct ListedProblem {
+  ValidationProblem stated;
+  std::function<void(ValidationProblem&)> solve;
+};
+
+using ProblemList = std::vector<ListedProblem>;
+
+void list_elastica(ProblemList& list);   // bending at rest
+void list_dynamics(ProblemList& list);   // vibration, momentum
+void list_twist(ProblemList& list);      // twisting and its instabilities
+void list_friction(ProblemList& list);   // sliding on a plane and round a bar
+
+}  // namespace filum

@@ -1,0 +1,146 @@
+// Dry friction of the rod: on a plane, and round a bar.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "evidence/problem_list.h"
+#include "evidence/rod_probe.h"
+
+namespace filum {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kWeight = 9.81;  // [N/kg]
+
+/// A straight 10 mm thread that lies on a level plane with friction 0.3, pulled along by `pull` times its weight.
+struct Sled {
+  explicit Sled(double pull) : probe(RodMaterial::round_wire(0.1e-3, 2.5e9, 0.35, 1140.0), nodes_on_x(kNodes, 0.0, 1e-3)) {
+    probe.rod.material.drag = 0.0;
+    probe.state.x.row(2).setConstant(0.1e-3);
+    Obstacle plane;
+    plane.kind = Obstacle::Kind::plane;
+    plane.friction = 0.3;
+    probe.rod.obstacles.bodies.resize(1);
+    probe.rod.obstacles.obstacles.push_back(plane);
+    probe.options.gravity = Vec3(0, 0, -kWeight);
+    probe.options.dt = 1e-3;
+    const double node = probe.rod.material.mass_per_length() * 1e-3 * kWeight * pull;
+    for (int i = 0; i < kNodes; ++i) probe.rod.boundary.load(0, i) = (i == 0 || i + 1 == kNodes ? 0.5 : 1.0) * node;
+  }
+  /// Mean speed [m/s] over `steps` steps of 1 ms.
+  double speed(int steps) {
+    const double from = probe.state.x.row(0).mean();
+    for (int k = 0; k < steps; ++k)
+      if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNan;
+    return (probe.state.x.row(0).mean() - from) / (1e-3 * steps);
+  }
+  static constexpr int kNodes = 11;
+  RodProbe probe;
+};
+
+/// Pull over weight at which the thread begins to slide.
+double sliding_threshold() {
+  double low = 0.2, high = 0.4;
+  for (int k = 0; k < 14; ++k) {
+    const double middle = 0.5 * (low + high);
+    Sled sled(middle);
+    sled.speed(300);
+    (sled.speed(100) < 1e-5 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+void list_sled(ProblemList& list) {
+  ValidationProblem p;
+  p.source = "Coulomb's law";
+  p.name = "stick-slip-threshold";
+  p.quantity = "pull / weight at which a thread on a plane slides, mu = 0.3";
+  p.expected = 0.3;
+  p.tolerance = 5e-3;
+  list.push_back({p, [](ValidationProblem& r) { r.got = sliding_threshold(); }});
+  p.name = "stick-slip-creep";
+  p.quantity = "speed under 98 % of the pull that moves it";
+  p.unit = "m/s";
+  p.expected = 0.0;
+  p.tolerance = 1e-9;
+  list.push_back({p, [](ValidationProblem& r) {
+                    Sled sled(0.98 * 0.3);
+                    sled.speed(1000);
+                    r.got = sled.speed(1000);
+                  }});
+  p.name = "stick-slip-acceleration";
+  p.quantity = "acceleration under twice the pull that moves it";
+  p.unit = "m/s2";
+  p.expected = 0.3 * kWeight;
+  p.tolerance = 1e-2;
+  list.push_back({p, [](ValidationProblem& r) {
+                    Sled sled(0.6);
+                    sled.speed(50);
+                    const double before = sled.probe.state.v.row(0).mean();
+                    sled.speed(100);
+                    r.got = (sled.probe.state.v.row(0).mean() - before) / 0.1;
+                  }});
+}
+
+/// Ratio of the tensions of a limp thread drawn over half of a round bar. Slack side: 1 N.
+double capstan_ratio(double mu) {
+  constexpr double kBar = 10e-3, kThread = 0.1e-3, kEdge = 0.4e-3, kHang = 10e-3;
+  const double R = kBar + kThread;
+  const int n = static_cast<int>((kPi * R + 2.0 * kHang) / kEdge) + 1;
+  Points nodes(3, n);
+  for (int i = 0; i < n; ++i) {
+    const double s = kEdge * i - kHang, a = std::clamp(s / R, 0.0, kPi);
+    nodes.col(i) = Vec3(-R * std::cos(a), 0.0, R * std::sin(a));
+    if (s < 0.0) nodes(2, i) = s;
+    if (s > kPi * R) nodes(2, i) = kPi * R - s;
+  }
+  RodMaterial m;
+  m.radius = kThread;
+  m.EI = m.GJ = 1e-7;  // T R^2/B = 1000: limp
+  m.EA = 1e4;
+  m.drag = 1.0;
+  RodProbe probe(m, nodes);
+  probe.rod.contact_material.stiffness = 1e5;
+  Obstacle bar;
+  bar.a_B = Vec3(0, -5e-3, 0);
+  bar.b_B = Vec3(0, 5e-3, 0);
+  bar.r_a = bar.r_b = kBar;
+  bar.friction = mu;
+  probe.rod.obstacles.bodies.resize(1);
+  probe.rod.obstacles.obstacles.push_back(bar);
+  probe.rod.boundary.load(2, 0) = -1.0;
+  probe.hold(n - 1);
+  probe.options.dt = 1e-3;
+  probe.options.relative_tolerance = 1e-6;
+  double sum = 0.0;
+  constexpr int kSteps = 600, kCounted = 200;
+  for (int k = 0; k < kSteps; ++k) {
+    probe.rod.boundary.target(2, n - 1) -= 5e-3 * probe.options.dt;
+    if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNan;
+    if (k >= kSteps - kCounted) sum += edge_tension(m, probe.state, n - 3) / edge_tension(m, probe.state, 1);
+  }
+  return sum / kCounted;
+}
+
+void list_capstan(ProblemList& list, double mu, const char* label) {
+  ValidationProblem p;
+  p.name = std::string("capstan-").append(label);
+  p.source = "Euler-Eytelwein, T2/T1 = exp(mu theta), for a thread without stiffness (T R^2/B = 1000)";
+  p.quantity = std::string("ratio of tensions over half a turn, mu = ").append(label);
+  p.expected = std::exp(mu * kPi);
+  p.tolerance = 2e-2;
+  list.push_back({p, [mu](ValidationProblem& r) { r.got = capstan_ratio(mu); }});
+}
+
+}  // namespace
+
+void list_friction(ProblemList& list) {
+  list_sled(list);
+  list_capstan(list, 0.1, "0.1");
+  list_capstan(list, 0.3, "0.3");
+}
+
+}  // namespace filum

@@ -1,0 +1,75 @@
+#include "evidence/validation.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "base/error.h"
+#include "evidence/problem_list.h"
+
+namespace filum {
+namespace {
+
+ProblemList all_problems() {
+  ProblemList list;
+  list_elastica(list);
+  list_dynamics(list);
+  list_twist(list);
+  list_friction(list);
+  return list;
+}
+
+bool stands_for(const std::string& name, const std::string& problem) {
+  return problem.starts_with(name) && (problem.size() == name.size() || problem[name.size()] == '-');
+}
+
+bool wanted(const std::vector<std::string>& names, const std::string& problem) {
+  if (names.empty()) return true;
+  for (const std::string& name : names)
+    if (stands_for(name, problem)) return true;
+  return false;
+}
+
+void check_names(const std::vector<std::string>& names, const ProblemList& list) {
+  for (const std::string& name : names) {
+    bool known = false;
+    for (const ListedProblem& p : list) known = known || stands_for(name, p.stated.name);
+    if (known) continue;
+    std::string all;
+    for (const ListedProblem& p : list) all.append(all.empty() ? "one of " : ", ").append(p.stated.name);
+    throw InputError("validate", "NAME", name, all);
+  }
+}
+
+}  // namespace
+
+void ValidationProblem::judge() {
+  error = std::abs(got - expected);
+  if (expected != 0.0) error /= std::abs(expected);
+  passed = std::isfinite(got) && error <= tolerance;
+  if (least_order) passed = passed && order && *order >= *least_order;
+}
+
+std::vector<std::string> validation_names() {
+  std::vector<std::string> names;
+  for (const ListedProblem& p : all_problems()) names.push_back(p.stated.name);
+  return names;
+}
+
+std::vector<ValidationProblem> run_validation(const std::vector<std::string>& names, const ValidationProgress& progress) {
+  const ProblemList list = all_problems();
+  check_names(names, list);
+  std::vector<ValidationProblem> results;
+  for (const ListedProblem& p : list) {
+    if (!wanted(names, p.stated.name)) continue;
+    ValidationProblem r = p.stated;
+    const auto start = std::chrono::steady_clock::now();
+    p.solve(r);
+    r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    r.judge();
+    if (progress) progress(r);
+    results.push_back(std::move(r));
+  }
+  return results;
+}
+
+}  // namespace filum

@@ -1,0 +1,1 @@
+filum_test(evidence/validation filum_evidence)

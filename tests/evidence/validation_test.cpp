@@ -1,0 +1,90 @@
+#include "evidence/validation.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+class EveryProblem : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryProblem, IsWithinTheToleranceStatedWithIt) {
+  const auto solved = run_validation({GetParam()});
+  bool found = false;
+  for (const ValidationProblem& p : solved) {
+    if (p.name != GetParam()) continue;
+    found = true;
+    EXPECT_TRUE(p.passed) << p.quantity << ": expected " << p.expected << ", got " << p.got << ", error " << p.error
+                          << ", tolerance " << p.tolerance << ", order " << p.order.value_or(0.0);
+    EXPECT_FALSE(p.source.empty());
+    EXPECT_FALSE(p.quantity.empty());
+    EXPECT_FALSE(p.unit.empty());
+    EXPECT_GT(p.tolerance, 0.0);
+    EXPECT_GT(p.seconds, 0.0);
+  }
+  EXPECT_TRUE(found);
+}
+
+INSTANTIATE_TEST_SUITE_P(Validation, EveryProblem, testing::ValuesIn(validation_names()), [](const auto& info) {
+  std::string name = info.param;
+  for (char& c : name)
+    if (c == '-' || c == '.') c = '_';
+  return name;
+});
+
+TEST(Validation, NamesAreUnique) {
+  const auto names = validation_names();
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+}
+
+TEST(Validation, ANameStandsForThoseThatBeginWithIt) {
+  const auto solved = run_validation({"michell-ring"});
+  EXPECT_EQ(solved.size(), 3u);
+}
+
+TEST(Validation, AnUnknownNameIsRefusedAndTheKnownOnesAreNamed) {
+  try {
+    run_validation({"michell"});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.value, "michell");
+    EXPECT_NE(error.expected.find("bending-energy"), std::string::npos);
+  }
+}
+
+TEST(Validation, WhatMissesItsToleranceFails) {
+  ValidationProblem p;
+  p.expected = 2.0;
+  p.tolerance = 0.01;
+  p.got = 2.019;
+  p.judge();
+  EXPECT_TRUE(p.passed);
+  EXPECT_NEAR(p.error, 0.0095, 1e-12);
+  p.got = 2.021;
+  p.judge();
+  EXPECT_FALSE(p.passed);
+  p.got = std::numeric_limits<double>::quiet_NaN();
+  p.judge();
+  EXPECT_FALSE(p.passed);
+}
+
+TEST(Validation, AnOrderBelowTheOneStatedFails) {
+  ValidationProblem p;
+  p.expected = p.got = 1.0;
+  p.least_order = 1.8;
+  p.judge();
+  EXPECT_FALSE(p.passed);
+  p.order = 1.5;
+  p.judge();
+  EXPECT_FALSE(p.passed);
+  p.order = 1.9;
+  p.judge();
+  EXPECT_TRUE(p.passed);
+}
+
+}  // namespace
+}  // namespace filum
