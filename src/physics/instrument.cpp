@@ -111,14 +111,15 @@ struct Instruments::Ode {
   }
 
   void drive(std::size_t i, const InstrumentParameters& p, const InstrumentState& s, const InstrumentCommand& c, const Vec3& v_D,
-             const Vec3& w_D, double h) noexcept {
-    const Vec3 f = (p.coupling_stiffness * (c.X_WD.p - s.X_WT.p - h * s.v) + p.coupling_damping * (v_D - s.v)) /
+             const Vec3& w_D, const Vec3& force, const Vec3& torque, double h) noexcept {
+    const Vec3 v = s.v + h / p.mass * force, w = s.w + h / p.inertia * torque;  // as the scene alone would have it
+    const Vec3 f = (p.coupling_stiffness * (c.X_WD.p - s.X_WT.p - h * v) + p.coupling_damping * (v_D - v)) /
                    (1.0 + h * p.coupling_damping / p.mass + h * h * p.coupling_stiffness / p.mass);
     const Vec3 turn = rotation_vector(c.X_WD.q * s.X_WT.q.conjugate());
-    const Vec3 t = (p.turning_stiffness * (turn - h * s.w) + p.turning_damping * (w_D - s.w)) /
+    const Vec3 t = (p.turning_stiffness * (turn - h * w) + p.turning_damping * (w_D - w)) /
                    (1.0 + h * p.turning_damping / p.inertia + h * h * p.turning_stiffness / p.inertia);
-    dBodyAddForce(tools[i].handle, f.x(), f.y(), f.z());
-    dBodyAddTorque(tools[i].handle, t.x(), t.y(), t.z());
+    dBodyAddForce(tools[i].handle, f.x() + force.x(), f.y() + force.y(), f.z() + force.z());
+    dBodyAddTorque(tools[i].handle, t.x() + torque.x(), t.y() + torque.y(), t.z() + torque.z());
     const double wanted = std::clamp(c.grip_angle, 0.0, p.max_angle);
     for (int k = 0; k < 2; ++k) dJointSetHingeParam(tools[i].hinge[k], dParamVel, side(k) * 0.5 * (wanted - s.angle) / kJawTime);
   }
@@ -143,9 +144,7 @@ void Instruments::step(std::vector<InstrumentState>& states, const std::vector<I
       const Vec3 v_D = (c.X_WD.p - states[i].X_WD.p) / dt;
       const Vec3 w_D = rotation_vector(c.X_WD.q * states[i].X_WD.q.conjugate()) / dt;
       ode_->write(i, parameters_[i], states[i]);
-      ode_->drive(i, parameters_[i], states[i], c, v_D, w_D, h);
-      dBodyAddForce(ode_->tools[i].handle, force[i].x(), force[i].y(), force[i].z());
-      dBodyAddTorque(ode_->tools[i].handle, torque[i].x(), torque[i].y(), torque[i].z());
+      ode_->drive(i, parameters_[i], states[i], c, v_D, w_D, force[i], torque[i], h);
     }
     dWorldStep(ode_->world, h);
     for (std::size_t i = 0; i < states.size(); ++i) ode_->read(i, parameters_[i], states[i]);

@@ -6,8 +6,8 @@
 //
 // Tool frame T: origin where the closed jaws' tips meet, +z from the tip towards the handle, jaws open along x about the
 // hinge at z = jaw_length.
-// Coupling force, integrated implicitly (m the mass, h the step):
-//   f = (k (p_D - p - h v) + c (v_D - v)) / (1 + h c/m + h^2 k/m), likewise for rotation.
+// Coupling force, integrated implicitly (m the mass, h the step, F the force of the scene, v' = v + h F/m):
+//   f = (k (p_D - p - h v') + c (v_D - v')) / (1 + h c/m + h^2 k/m), likewise for rotation. At rest k (p_D - p) = -F.
 // Grip: N is the measured force where the device has one, else the squeeze of the command beyond closure,
 //   N = k_grip (theta - theta_command) / jaw_length, 0 <= N <= N_max.
 // Neglects: bending of the jaws, play in the hinge, weight (the hand carries it). Test: instrument_test.

@@ -1,0 +1,161 @@
+#include "world/scene_file.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A copy of the shipped scenes and models that a test may spoil.
+class SceneFile : public testing::Test {
+ protected:
+  SceneFile() : root_(fs::temp_directory_path() / ("filum_scene_" + std::to_string(getpid()) + "_" +
+                                                    testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::create_directories(root_);
+    for (const char* folder : {"curricula", "models"})
+      fs::copy(fs::path(FILUM_SOURCE_DIR) / folder, root_ / folder, fs::copy_options::recursive);
+  }
+  ~SceneFile() override { fs::remove_all(root_); }
+
+  static std::string read(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+  static void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+  /// Replaces `from` in `file`, expects a refusal that names file and field, and puts the file back.
+  void expect_refusal(const std::string& file, const std::string& from, const std::string& to, const std::string& field) {
+    const std::string good = read(root_ / file);
+    std::string bad = good;
+    const auto at = bad.find(from);
+    ASSERT_NE(at, std::string::npos) << from << " is not in " << file;
+    bad.replace(at, from.size(), to);
+    write(root_ / file, bad);
+    try {
+      load_model(root_.string(), "knot-square", "");
+      ADD_FAILURE() << "accepted " << to << " for " << from;
+    } catch (const InputError& e) {
+      EXPECT_NE(e.file.find(file), std::string::npos) << e.what();
+      EXPECT_NE(e.field.find(field), std::string::npos) << e.what();
+      EXPECT_FALSE(e.expected.empty());
+    }
+    write(root_ / file, good);
+  }
+
+  fs::path root_;
+  const std::string scene_ = "curricula/knot-square/scene.yaml", suture_ = "models/suture/10-0-nylon.yaml",
+                    forceps_ = "models/instrument/forceps.yaml";
+};
+
+TEST_F(SceneFile, EveryShippedSceneAndSutureLoads) {
+  int scenes = 0, sutures = 0;
+  for (const auto& entry : fs::directory_iterator(root_ / "curricula")) {
+    if (!fs::exists(entry.path() / "scene.yaml")) continue;
+    EXPECT_NO_THROW(load_model(root_.string(), entry.path().filename().string(), "")) << entry.path();
+    ++scenes;
+  }
+  for (const auto& entry : fs::directory_iterator(root_ / "models/suture")) {
+    ContactMaterial contact;
+    EXPECT_NO_THROW(load_suture(entry.path().string(), contact)) << entry.path();
+    ++sutures;
+  }
+  EXPECT_GE(scenes, 3);
+  EXPECT_GE(sutures, 6);
+}
+
+TEST_F(SceneFile, ReadsWhatIsWritten) {
+  const auto m = load_model(root_.string(), "knot-square", "");
+  EXPECT_EQ(m->description.task, "knot-square");
+  EXPECT_EQ(m->description.suture, "10-0-nylon");
+  EXPECT_NEAR(m->thread.radius, 12.5e-6, 1e-12);
+  EXPECT_NEAR(m->thread.EI, 4.79e-11, 1e-18);
+  EXPECT_NEAR(m->thread.internal_friction, 0.010, 1e-9);
+  EXPECT_NEAR(m->contact.stiffness, 1.64e4, 1.0);
+  EXPECT_EQ(m->description.n_tools, static_cast<int>(m->instruments.size()));
+  EXPECT_GE(m->description.n_tools, 2);
+  const Points& path = m->thread_path;
+  double length = 0.0;
+  for (int i = 0; i + 1 < path.cols(); ++i) length += (path.col(i + 1) - path.col(i)).norm();
+  EXPECT_GT(length, 10e-3);
+  EXPECT_LE((path.col(1) - path.col(0)).norm(), m->resolution.longest * (1 + 1e-9));
+  for (const Pose& X : m->instrument_start) EXPECT_NEAR(X.q.norm(), 1.0, 1e-12);
+}
+
+TEST_F(SceneFile, AnotherSutureTakesThePlaceOfTheScenes) {
+  const auto m = load_model(root_.string(), "knot-square", (root_ / "models/suture/8-0-nylon.yaml").string());
+  EXPECT_EQ(m->description.suture, "8-0-nylon");
+  EXPECT_GT(m->thread.radius, 15e-6);
+}
+
+TEST_F(SceneFile, UnknownTaskIsRefused) {
+  for (const char* task : {"knot-unknown", "", "../knot-square", "knot square"}) {
+    try {
+      load_model(root_.string(), task, "");
+      ADD_FAILURE() << task;
+    } catch (const InputError& e) {
+      EXPECT_EQ(e.field, "task");
+      EXPECT_EQ(e.value, task);
+    }
+  }
+}
+
+TEST_F(SceneFile, SceneErrorsNameFileAndField) {
+  expect_refusal(scene_, "format: filum-scene/1", "format: filum-scene/9", "format");
+  expect_refusal(scene_, "title:", "subtitle:", "title");
+  expect_refusal(scene_, "step: \"2 ms\"", "step: \"2 mm\"", "step");
+  expect_refusal(scene_, "step: \"2 ms\"", "step: \"2 s\"", "step");
+  expect_refusal(scene_, "step: \"2 ms\"", "step: \"nan ms\"", "step");
+  expect_refusal(scene_, "step: \"2 ms\"", "step: \"2 ms\"\nsurprise: 1", "surprise");
+  expect_refusal(scene_, "newton_iterations:", "newton_iteration:", "newton_iteration");
+  expect_refusal(scene_, "floor:", "flor:", "floor");
+  expect_refusal(scene_, "post_friction: \"", "post_friction: \"-", "post_friction");
+  expect_refusal(scene_, "nodes: 240", "nodes: 1", "nodes");
+  expect_refusal(scene_, "axis: [0, 1, 0]", "axis: [0, 1]", "axis");
+  expect_refusal(scene_, "  length: \"", "  width: \"", "length");
+  expect_refusal(scene_, "radius: \"0.4 mm\"", "radius: \"-0.4 mm\"", "radius");
+}
+
+TEST_F(SceneFile, InstrumentPoseErrorsNameFileAndField) {
+  const std::string text = read(root_ / scene_);
+  const auto at = text.find("handle: [");
+  ASSERT_NE(at, std::string::npos);
+  const std::string handle = text.substr(at, text.find(']', at) + 1 - at);
+  expect_refusal(scene_, handle, "handle: [0, 0, 0]", "handle");
+  const auto to = text.find("opening: [", at);
+  const std::string opening = text.substr(to, text.find(']', to) + 1 - to);
+  expect_refusal(scene_, opening, "opening" + handle.substr(handle.find(':')), "opening");
+}
+
+TEST_F(SceneFile, ModelErrorsNameFileAndField) {
+  expect_refusal(suture_, "25 um", "25 kg", "diameter");
+  expect_refusal(suture_, "25 um", "0 um", "diameter");
+  expect_refusal(suture_, "source:", "origin:", "diameter");
+  expect_refusal(suture_, "strength:", "strenght:", "stren");
+  expect_refusal(suture_, "friction_coefficient:\n  value: \"0.2\"", "friction_coefficient:\n  value: \"-0.2\"", "friction_coefficient");
+  expect_refusal(forceps_, "kind: forceps", "kind: tongs", "kind");
+  expect_refusal(forceps_, "jaw_length: \"12 mm\"", "jaw_length: \"12\"", "jaw_length");
+  expect_refusal(forceps_, "jaw_length: \"12 mm\"", "jaw_length: \"12 mm\"\ncolour: red", "colour");
+  expect_refusal(forceps_, "max_grip_force: \"3 N\"", "max_grip_force: \"3 J\"", "max_grip_force");
+}
+
+TEST_F(SceneFile, MissingModelFilesAreNamed) {
+  fs::remove(root_ / forceps_);
+  try {
+    load_model(root_.string(), "knot-square", "");
+    ADD_FAILURE();
+  } catch (const InputError& e) {
+    EXPECT_NE(e.file.find("forceps.yaml"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace filum

@@ -1,0 +1,147 @@
+#include "world/world.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/physics/allocation_count.h"
+#include "world/model.h"
+#include "world/state.h"
+
+namespace filum {
+namespace {
+
+std::shared_ptr<const Model> scene() {
+  static const auto model = load_model(FILUM_SOURCE_DIR, "knot-square");
+  return model;
+}
+
+/// What a hand would do: the first tool goes down on the long end of the thread, closes, lifts and swings it.
+Inputs hand(int step) {
+  const Model& m = *scene();
+  Inputs in;
+  for (std::size_t i = 0; i < m.instruments.size(); ++i) in.tools[i] = {m.instrument_start[i], 0.2, 0.0, false, true, 0};
+  ToolInput& t = in.tools[0];
+  const Vec3 handle = t.X_WD.q * Vec3::UnitZ();
+  const Vec3 on_thread = Vec3(t.X_WD.p.x(), m.thread_path(1, 0), m.thread_path(2, 0)) - 0.8e-3 * handle;
+  const double down = std::clamp(step / 150.0, 0.0, 1.0), up = std::clamp((step - 220) / 200.0, 0.0, 1.0);
+  t.X_WD.p = (1.0 - down) * t.X_WD.p + down * on_thread + up * Vec3(1e-3, 2e-3 * std::sin(0.02 * step), 3e-3);
+  if (step > 170) t.grip_angle = -0.08;
+  return in;
+}
+
+void run(World& w, int from, int to) {
+  for (int k = from; k < to; ++k) w.step(hand(k));
+}
+
+TEST(World, HandTakesTheThread) {
+  World w(scene());
+  bool grasped = false;
+  for (int k = 0; k < 450; ++k) {
+    w.step(hand(k));
+    for (int e = 0; e < w.observation().n_events; ++e) grasped = grasped || std::string(w.observation().events[static_cast<std::size_t>(e)].name) == "grasp";
+    ASSERT_TRUE(w.state().thread.x.leftCols(w.state().thread.n).allFinite());
+  }
+  EXPECT_TRUE(grasped);
+  EXPECT_GE(w.observation().tools[0].grasped_edge, 0);
+  EXPECT_GT(w.observation().tools[0].grip_force, 0.1);
+  EXPECT_EQ(w.observation().step, 450u);
+}
+
+TEST(World, SameInputsGiveBitEqualStates) {
+  World a(scene()), b(scene());
+  EXPECT_EQ(a.state_hash(), b.state_hash());
+  for (int k = 0; k < 450; ++k) {
+    a.step(hand(k));
+    b.step(hand(k));
+    ASSERT_EQ(a.state_hash(), b.state_hash()) << k;
+  }
+  Inputs other = hand(450);
+  other.tools[0].X_WD.p.x() += 1e-9;
+  a.step(hand(450));
+  b.step(other);
+  EXPECT_NE(a.state_hash(), b.state_hash());
+}
+
+TEST(World, RestoredSnapshotGoesOnAsIfNeverInterrupted) {
+  World whole(scene());
+  run(whole, 0, 250);
+  const State snapshot = whole.state();
+  ASSERT_FALSE(snapshot.memory.grasps.empty()) << "the snapshot is taken with the thread in hand";
+  run(whole, 250, 550);
+  World fresh(scene());
+  fresh.restore(snapshot);
+  run(fresh, 250, 550);
+  EXPECT_EQ(fresh.array_hashes(), whole.array_hashes());
+  EXPECT_EQ(fresh.state_hash(), whole.state_hash());
+  World used(scene());  // one that has been elsewhere in between
+  run(used, 0, 400);
+  used.restore(snapshot);
+  run(used, 250, 550);
+  EXPECT_EQ(used.array_hashes(), whole.array_hashes());
+}
+
+TEST(World, InputThatIsNotANumberIsIgnored) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+  World w(scene());
+  run(w, 0, 100);
+  const Vec3 before = w.observation().tools[0].X_WT.p;
+  for (int k = 0; k < 60; ++k) {
+    Inputs in = hand(100);
+    ToolInput& t = in.tools[0];
+    t.X_WD.p += Vec3(0.1, 0, 0);  // it would be seen if it were followed
+    if (k % 5 == 0) t.X_WD.p.x() = kNan;
+    if (k % 5 == 1) t.X_WD.q.w() = kInf;
+    if (k % 5 == 2) t.grip_angle = kNan;
+    if (k % 5 == 3) t.X_WD.q.coeffs().setZero();
+    if (k % 5 == 4) t.grip_force = kNan;
+    w.step(in);
+    EXPECT_FALSE(w.observation().tools[0].input_valid);
+    EXPECT_TRUE(w.observation().tools[1].input_valid);
+  }
+  EXPECT_LT((w.observation().tools[0].X_WT.p - before).norm(), 1e-3);
+  EXPECT_TRUE(w.state().thread.x.leftCols(w.state().thread.n).allFinite());
+  EXPECT_TRUE(w.state().thread.v.leftCols(w.state().thread.n).allFinite());
+  for (const InstrumentState& i : w.state().instruments) EXPECT_TRUE(i.X_WT.finite() && i.v.allFinite() && std::isfinite(i.angle));
+}
+
+TEST(World, SilentDeviceKeepsItsToolStill) {
+  World w(scene());
+  run(w, 0, 1);
+  Inputs silent = hand(140);
+  silent.tools[0].valid = false;
+  w.step(silent);
+  ASSERT_EQ(w.observation().n_events, 1);
+  EXPECT_STREQ(w.observation().events[0].name, "input-lost");
+  EXPECT_EQ(w.observation().events[0].tool, 0);
+  for (int k = 0; k < 300; ++k) w.step(silent);
+  EXPECT_NEAR((w.observation().tools[0].X_WT.p - hand(0).tools[0].X_WD.p).norm(), 0.0, 1e-6);
+  EXPECT_LT(w.observation().tools[0].v_W.norm(), 1e-5);
+  w.step(hand(0));
+  EXPECT_STREQ(w.observation().events[0].name, "input-back");
+}
+
+TEST(World, StepOfOursAllocatesNothing) {
+  if (!FILUM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "allocations cannot be counted under a sanitizer";
+  World w(scene());
+  run(w, 0, 200);
+  const long before = allocations;
+  run(w, 200, 450);  // grasp, lift, contact, changes of resolution
+  const double each = static_cast<double>(allocations - before) / 250.0;
+  RecordProperty("allocations_per_step", std::to_string(each));
+  // What is left is ODE's: it takes its scratch memory anew now and then (at most two sub-steps a step).
+  Instruments instruments(scene()->instruments);
+  std::vector<InstrumentState> states(scene()->instruments.size());
+  std::vector<InstrumentCommand> commands(states.size());
+  const std::vector<Vec3> zero(states.size(), Vec3::Zero());
+  for (int k = 0; k < 10; ++k) instruments.step(states, commands, zero, zero, scene()->step.dt);
+  const long start = allocations;
+  for (int k = 0; k < 250; ++k) instruments.step(states, commands, zero, zero, scene()->step.dt);
+  const double of_ode = static_cast<double>(allocations - start) / 250.0;
+  EXPECT_LE(each, of_ode + 1e-9) << "ODE alone takes " << of_ode << " a step";
+  EXPECT_LE(of_ode, 200.0);
+}
+
+}  // namespace
+}  // namespace filum
