@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "base/error.h"
+#include "evidence/name_choice.h"
 #include "evidence/problem_list.h"
 
 namespace filum {
@@ -15,29 +15,8 @@ ProblemList all_problems() {
   list_dynamics(list);
   list_twist(list);
   list_friction(list);
+  list_knots(list);
   return list;
-}
-
-bool stands_for(const std::string& name, const std::string& problem) {
-  return problem.starts_with(name) && (problem.size() == name.size() || problem[name.size()] == '-');
-}
-
-bool wanted(const std::vector<std::string>& names, const std::string& problem) {
-  if (names.empty()) return true;
-  for (const std::string& name : names)
-    if (stands_for(name, problem)) return true;
-  return false;
-}
-
-void check_names(const std::vector<std::string>& names, const ProblemList& list) {
-  for (const std::string& name : names) {
-    bool known = false;
-    for (const ListedProblem& p : list) known = known || stands_for(name, p.stated.name);
-    if (known) continue;
-    std::string all;
-    for (const ListedProblem& p : list) all.append(all.empty() ? "one of " : ", ").append(p.stated.name);
-    throw InputError("validate", "NAME", name, all);
-  }
 }
 
 }  // namespace
@@ -57,10 +36,10 @@ std::vector<std::string> validation_names() {
 
 std::vector<ValidationProblem> run_validation(const std::vector<std::string>& names, const ValidationProgress& progress) {
   const ProblemList list = all_problems();
-  check_names(names, list);
+  check_names("validate", names, validation_names());
   std::vector<ValidationProblem> results;
   for (const ListedProblem& p : list) {
-    if (!wanted(names, p.stated.name)) continue;
+    if (!is_wanted(names, p.stated.name)) continue;
     ValidationProblem r = p.stated;
     const auto start = std::chrono::steady_clock::now();
     p.solve(r);

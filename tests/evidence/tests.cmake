@@ -1,1 +1,8 @@
+filum_test(evidence/bench filum_evidence)
 filum_test(evidence/validation filum_evidence)
+if(TARGET filum)
+  find_package(nlohmann_json REQUIRED)
+  filum_test(evidence/json nlohmann_json::nlohmann_json)
+  add_dependencies(evidence_json_test filum)
+  target_compile_definitions(evidence_json_test PRIVATE FILUM_PROGRAM="$<TARGET_FILE:filum>")
+endif()

@@ -1,0 +1,39 @@
+#include "evidence/bench.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+DrivenTask no_task(const std::string& task) { throw InputError("test", "task", task, "none"); }
+
+TEST(Bench, TimesAreOrderedAndTheReferenceIsTimedBesideThem) {
+  const auto results = run_benches({"scaling-50"}, no_task);
+  ASSERT_EQ(results.size(), 1u);
+  const BenchResult& r = results[0];
+  EXPECT_EQ(r.nodes, 50);
+  EXPECT_EQ(r.steps, 500);
+  EXPECT_GT(r.p50_ms, 0.0);
+  EXPECT_LE(r.p50_ms, r.p99_ms);
+  EXPECT_LE(r.p99_ms, r.max_ms);
+  EXPECT_GT(r.real_time_factor, 0.0);
+  EXPECT_FALSE(r.reference_name.empty());
+  EXPECT_GT(r.reference_p50_ms, 0.0);
+}
+
+TEST(Bench, ANameStandsForThoseThatBeginWithIt) {
+  std::size_t scaling = 0;
+  for (const std::string& name : bench_names()) scaling += name.starts_with("scaling-") ? 1 : 0;
+  EXPECT_EQ(run_benches({"scaling"}, no_task).size(), scaling);
+}
+
+TEST(Bench, AnUnknownNameIsRefused) { EXPECT_THROW(run_benches({"scal"}, no_task), InputError); }
+
+TEST(Bench, AMissingTaskIsToldByItsOpener) { EXPECT_THROW(run_benches({"task-knot-square"}, no_task), InputError); }
+
+TEST(Bench, TheMachineIsNamed) { EXPECT_NE(machine_text().find(" cores"), std::string::npos); }
+
+}  // namespace
+}  // namespace filum
