@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "world/world.h"
@@ -55,9 +56,9 @@ TEST(StateHash, NamesTheArrayThatChanged) {
       EXPECT_EQ(after[k].second != before[k].second, after[k].first == name) << name << " changed, seen in " << after[k].first;
     }
   }
-  for (const auto& [array, hash] : before) {
-    const bool covered = std::any_of(changes.begin(), changes.end(), [&](const auto& c) { return c.first == array; });
-    EXPECT_TRUE(covered) << array;
+  for (const auto& array : before) {
+    const bool covered = std::any_of(changes.begin(), changes.end(), [&](const auto& c) { return c.first == array.first; });
+    EXPECT_TRUE(covered) << array.first;
   }
 }
 

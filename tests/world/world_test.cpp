@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "tests/physics/allocation_count.h"
 #include "world/model.h"
@@ -141,6 +143,8 @@ TEST(World, StepOfOursAllocatesNothing) {
   const double of_ode = static_cast<double>(allocations - start) / 250.0;
   EXPECT_LE(each, of_ode + 1e-9) << "ODE alone takes " << of_ode << " a step";
   EXPECT_LE(of_ode, 200.0);
+  const State copy = w.state();
+  EXPECT_GT(allocations, start + 5) << "the counter works";
 }
 
 }  // namespace
