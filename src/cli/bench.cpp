@@ -1,5 +1,7 @@
 // filum bench: how long the time steps take on this machine.
 
+#include "evidence/bench.h"
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -9,7 +11,6 @@
 #include "cli/inputs.h"
 #include "cli/options.h"
 #include "cli/setup.h"
-#include "evidence/bench.h"
 #include "haptics/haptic_loop.h"
 
 namespace filum {
@@ -34,7 +35,8 @@ DrivenTask open_task(const std::string& root, const std::string& task) {
   DrivenTask driven;
   driven.model = load_setup(root, task).model;
   driven.inputs = [hands](const World& world) {
-    const auto now_us = static_cast<std::int64_t>((world.observation().time + 0.5 * world.description().dt) * 1e6);
+    const auto now_us =
+        static_cast<std::int64_t>((world.observation().time + 0.5 * world.description().dt) * 1e6);
     for (; hands->next_us <= now_us; hands->next_us += kTick) hands->loop.tick(hands->next_us);
     return hands->loop.inputs().read();
   };
@@ -49,7 +51,8 @@ std::vector<std::string> possible_benches(const std::string& root) {
     if (task.empty() || std::filesystem::exists(demonstration_file(root, task))) {
       names.push_back(name);
     } else {
-      std::fprintf(stderr, "filum: %s is left out: %s does not exist\n", name.c_str(), demonstration_file(root, task).c_str());
+      std::fprintf(stderr, "filum: %s is left out: %s does not exist\n", name.c_str(),
+                   demonstration_file(root, task).c_str());
     }
   }
   return names;
@@ -59,23 +62,32 @@ nlohmann::ordered_json json_of(const BenchResult& r) {
   using Json = nlohmann::ordered_json;
   Json stages = Json::object();
   for (const auto& [name, ms] : r.stages) stages[name] = ms;
-  return {{"name", r.name},     {"nodes", r.nodes},   {"contacts", r.contacts},
-          {"dt_ms", r.dt_ms},   {"steps", r.steps},   {"p50_ms", r.p50_ms},
-          {"p99_ms", r.p99_ms}, {"max_ms", r.max_ms}, {"real_time_factor", r.real_time_factor},
-          {"stages", stages},   {"reference", {{"name", r.reference_name}, {"p50_ms", r.reference_p50_ms}}}};
+  return {{"name", r.name},
+          {"nodes", r.nodes},
+          {"contacts", r.contacts},
+          {"dt_ms", r.dt_ms},
+          {"steps", r.steps},
+          {"p50_ms", r.p50_ms},
+          {"p99_ms", r.p99_ms},
+          {"max_ms", r.max_ms},
+          {"real_time_factor", r.real_time_factor},
+          {"stages", stages},
+          {"reference", {{"name", r.reference_name}, {"p50_ms", r.reference_p50_ms}}}};
 }
 
 void print_line(const BenchResult& r) {
-  std::printf("%-18s %5d %8d %6.2f %6d %8.3f %8.3f %8.3f %9.2f %12.3f %8.2f\n", r.name.c_str(), r.nodes, r.contacts, r.dt_ms, r.steps,
-              r.p50_ms, r.p99_ms, r.max_ms, r.real_time_factor, r.reference_p50_ms, r.p50_ms / r.reference_p50_ms);
+  std::printf("%-18s %5d %8d %6.2f %6d %8.3f %8.3f %8.3f %9.2f %12.3f %8.2f\n", r.name.c_str(), r.nodes,
+              r.contacts, r.dt_ms, r.steps, r.p50_ms, r.p99_ms, r.max_ms, r.real_time_factor,
+              r.reference_p50_ms, r.p50_ms / r.reference_p50_ms);
   std::fflush(stdout);
 }
 
 int run(const BenchOptions& o) {
   const auto names = o.names.empty() ? possible_benches(o.common.root) : o.names;
   if (!o.common.json) {
-    std::printf("%s\n%-18s %5s %8s %6s %6s %8s %8s %8s %9s %12s %8s\n", machine_text().c_str(), "bench", "nodes", "contacts", "dt ms",
-                "steps", "p50 ms", "p99 ms", "max ms", "real time", "reference ms", "p50/ref");
+    std::printf("%s\n%-18s %5s %8s %6s %6s %8s %8s %8s %9s %12s %8s\n", machine_text().c_str(), "bench",
+                "nodes", "contacts", "dt ms", "steps", "p50 ms", "p99 ms", "max ms", "real time",
+                "reference ms", "p50/ref");
   }
   const auto opener = [&](const std::string& task) { return open_task(o.common.root, task); };
   const auto results = run_benches(names, opener, o.common.json ? BenchProgress() : print_line);
@@ -92,7 +104,8 @@ int run(const BenchOptions& o) {
 void add_bench(CLI::App& app, Action& action) {
   auto o = std::make_shared<BenchOptions>();
   CLI::App* command = app.add_subcommand("bench", "Time the simulation's steps on this machine");
-  command->add_option("name", o->names, "Benches to run, by name or beginning of the name up to a hyphen (default: all)");
+  command->add_option("name", o->names,
+                      "Benches to run, by name or beginning of the name up to a hyphen (default: all)");
   add_common(*command, o->common);
   command->callback([o, &action] { action.run = [o] { return run(*o); }; });
 }

@@ -19,27 +19,29 @@ struct ValidateOptions {
 
 nlohmann::ordered_json json_of(const ValidationProblem& p) {
   using Json = nlohmann::ordered_json;
-  return {{"name", p.name},         {"source", p.source}, {"quantity", p.quantity},
-          {"unit", p.unit},         {"expected", p.expected}, {"got", p.got},
-          {"error", p.error},       {"tolerance", p.tolerance}, {"order", p.order ? Json(*p.order) : Json(nullptr)},
-          {"passed", p.passed},     {"seconds", p.seconds}};
+  return {
+      {"name", p.name},     {"source", p.source},       {"quantity", p.quantity},
+      {"unit", p.unit},     {"expected", p.expected},   {"got", p.got},
+      {"error", p.error},   {"tolerance", p.tolerance}, {"order", p.order ? Json(*p.order) : Json(nullptr)},
+      {"passed", p.passed}, {"seconds", p.seconds}};
 }
 
 void print_line(const ValidationProblem& p) {
   char order[16] = "";
   if (p.order) std::snprintf(order, sizeof order, "%.2f", *p.order);
-  std::printf("%-4s %-28s %12.6g %12.6g %-6s %9.2e %9.2e %5s %7.2f\n", p.passed ? "ok" : "FAIL", p.name.c_str(), p.expected, p.got,
-              p.unit.c_str(), p.error, p.tolerance, order, p.seconds);
+  std::printf("%-4s %-28s %12.6g %12.6g %-6s %9.2e %9.2e %5s %7.2f\n", p.passed ? "ok" : "FAIL",
+              p.name.c_str(), p.expected, p.got, p.unit.c_str(), p.error, p.tolerance, order, p.seconds);
   std::fflush(stdout);
 }
 
 int run(const ValidateOptions& o) {
   if (!o.json) {
-    std::printf("%-4s %-28s %12s %12s %-6s %9s %9s %5s %7s\n", "", "problem", "expected", "got", "unit", "error", "tolerance",
-                "order", "seconds");
+    std::printf("%-4s %-28s %12s %12s %-6s %9s %9s %5s %7s\n", "", "problem", "expected", "got", "unit",
+                "error", "tolerance", "order", "seconds");
   }
   const auto problems = run_validation(o.names, o.json ? ValidationProgress() : print_line);
-  const auto failed = std::count_if(problems.begin(), problems.end(), [](const ValidationProblem& p) { return !p.passed; });
+  const auto failed =
+      std::count_if(problems.begin(), problems.end(), [](const ValidationProblem& p) { return !p.passed; });
   if (o.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const ValidationProblem& p : problems) list.push_back(json_of(p));
@@ -54,8 +56,10 @@ int run(const ValidateOptions& o) {
 
 void add_validate(CLI::App& app, Action& action) {
   auto o = std::make_shared<ValidateOptions>();
-  CLI::App* command = app.add_subcommand("validate", "Solve problems with known answers and say how far off each is");
-  command->add_option("name", o->names, "Problems to solve, by name or beginning of the name up to a hyphen (default: all)");
+  CLI::App* command =
+      app.add_subcommand("validate", "Solve problems with known answers and say how far off each is");
+  command->add_option("name", o->names,
+                      "Problems to solve, by name or beginning of the name up to a hyphen (default: all)");
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
   command->callback([o, &action] { action.run = [o] { return run(*o); }; });
 }

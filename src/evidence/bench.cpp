@@ -21,7 +21,8 @@ double milliseconds_since(Clock::time_point begin) {
 
 double percentile(std::vector<double> values, double fraction) {
   std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(fraction * static_cast<double>(values.size())))];
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(fraction * static_cast<double>(values.size())))];
 }
 
 /// Fixed work that depends on the machine alone.
@@ -79,14 +80,16 @@ void bench_hanging(BenchResult& r) {
   probe.hold_position(1);
   probe.options = RodStepOptions();
   probe.options.dt = 1e-3 * r.dt_ms;
-  time_steps(r, [&] { probe.rod.step(probe.state, probe.memory, probe.options); }, [] {});
+  time_steps(
+      r, [&] { probe.rod.step(probe.state, probe.memory, probe.options); }, [] {});
 }
 
 void bench_knot(BenchResult& r) {
   PulledKnot knot(r.nodes, 0.3, 1e-3 * r.dt_ms);
   const double radius = knot.probe.rod.material.radius;
-  time_steps(r, [&] { knot.pull(0.03); },
-             [&] { r.contacts = std::max(r.contacts, knot.probe.rod.contact().n_touching(radius)); });
+  time_steps(
+      r, [&] { knot.pull(0.03); },
+      [&] { r.contacts = std::max(r.contacts, knot.probe.rod.contact().n_touching(radius)); });
 }
 
 void bench_task(BenchResult& r, const std::string& task, const TaskOpener& open_task) {
@@ -94,12 +97,13 @@ void bench_task(BenchResult& r, const std::string& task, const TaskOpener& open_
   World world(driven.model);
   r.dt_ms = 1e3 * world.description().dt;
   Inputs inputs = driven.inputs(world);
-  time_steps(r, [&] { world.step(inputs); },
-             [&] {
-               r.nodes = std::max(r.nodes, world.observation().n_nodes);
-               r.contacts = std::max(r.contacts, world.observation().n_contacts);
-               inputs = driven.inputs(world);
-             });
+  time_steps(
+      r, [&] { world.step(inputs); },
+      [&] {
+        r.nodes = std::max(r.nodes, world.observation().n_nodes);
+        r.contacts = std::max(r.contacts, world.observation().n_contacts);
+        inputs = driven.inputs(world);
+      });
 }
 
 struct Bench {
@@ -119,10 +123,10 @@ std::vector<Bench> all_benches() {
   const auto hanging = [](BenchResult& r, const TaskOpener&) { bench_hanging(r); };
   const auto knot = [](BenchResult& r, const TaskOpener&) { bench_knot(r); };
   const auto square = [](BenchResult& r, const TaskOpener& open) { bench_task(r, "knot-square", open); };
-  return {{stated("rod-100", 100, 2000), hanging},      {stated("knot-101", 101, 8000), knot},
-          {stated("knot-301", 301, 8000), knot},        {stated("task-knot-square", 0, 5000), square},
-          {stated("scaling-50", 50, 500), hanging},     {stated("scaling-100", 100, 500), hanging},
-          {stated("scaling-200", 200, 500), hanging},   {stated("scaling-400", 400, 500), hanging},
+  return {{stated("rod-100", 100, 2000), hanging},    {stated("knot-101", 101, 8000), knot},
+          {stated("knot-301", 301, 8000), knot},      {stated("task-knot-square", 0, 5000), square},
+          {stated("scaling-50", 50, 500), hanging},   {stated("scaling-100", 100, 500), hanging},
+          {stated("scaling-200", 200, 500), hanging}, {stated("scaling-400", 400, 500), hanging},
           {stated("scaling-800", 800, 500), hanging}};
 }
 

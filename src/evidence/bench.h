@@ -1,6 +1,6 @@
 #pragma once
-// Timings of single time steps, each next to a fixed reference workload timed in the same process, so that ratios can be
-// compared between machines and between busy and idle ones.
+// Timings of single time steps, each next to a fixed reference workload timed in the same process, so that
+// ratios can be compared between machines and between busy and idle ones.
 
 #include <functional>
 #include <memory>
@@ -15,11 +15,11 @@ namespace filum {
 
 struct BenchResult {
   std::string name;
-  int nodes = 0, contacts = 0;   // contacts: most at a time
+  int nodes = 0, contacts = 0;  // contacts: most at a time
   double dt_ms = 0.0;
   int steps = 0;
   double p50_ms = 0.0, p99_ms = 0.0, max_ms = 0.0;
-  double real_time_factor = 0.0;  // scene time over time spent in steps
+  double real_time_factor = 0.0;                       // scene time over time spent in steps
   std::vector<std::pair<std::string, double>> stages;  // p50 [ms] of each part that is timed by itself
   std::string reference_name;
   double reference_p50_ms = 0.0;
@@ -35,8 +35,8 @@ using BenchProgress = std::function<void(const BenchResult&)>;
 
 std::vector<std::string> bench_names();
 
-/// Runs the benches named (all if `names` is empty); a name also stands for every bench that begins with it and a hyphen.
-/// Throws InputError for a name that is none.
+/// Runs the benches named (all if `names` is empty); a name also stands for every bench that begins with it
+/// and a hyphen. Throws InputError for a name that is none.
 std::vector<BenchResult> run_benches(const std::vector<std::string>& names, const TaskOpener& open_task,
                                      const BenchProgress& progress = {});
 

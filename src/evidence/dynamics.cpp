@@ -48,7 +48,9 @@ double cantilever_frequency(int edges) {
 void list_frequency(ProblemList& list) {
   ValidationProblem p;
   p.name = "cantilever-frequency";
-  p.source = "Euler-Bernoulli, omega = 3.51602 sqrt(B/(rho A))/L^2; rod of DisMech's cantilever: 1 m, radius 20 mm, 0.1 MPa, 500 kg/m3";
+  p.source =
+      "Euler-Bernoulli, omega = 3.51602 sqrt(B/(rho A))/L^2; rod of DisMech's cantilever: 1 m, radius 20 mm, "
+      "0.1 MPa, 500 kg/m3";
   p.quantity = "first angular frequency";
   p.unit = "rad/s";
   p.expected = 3.51602 * std::sqrt(1e5 * std::pow(0.02, 2) / 4.0 / 500.0);
@@ -78,7 +80,8 @@ Momentum momentum_of(const RodMaterial& m, const RodState& s) {
   return total;
 }
 
-/// Largest relative change of linear (.x) and angular (.y) momentum while a rod flies, bends, twists and spins for 1000 steps.
+/// Largest relative change of linear (.x) and angular (.y) momentum while a rod flies, bends, twists and
+/// spins for 1000 steps.
 Eigen::Vector2d momentum_drift() {
   constexpr int n = 31;
   RodProbe probe(slender_rod(1e-3, 0.7e-3, 1.0, 1e3, 0.01), nodes_on_x(n, 0.0, 1.0 / (n - 1)));
@@ -94,7 +97,8 @@ Eigen::Vector2d momentum_drift() {
   const Momentum start = momentum_of(probe.rod.material, probe.state);
   Eigen::Vector2d drift = Eigen::Vector2d::Zero();
   for (int k = 0; k < 1000; ++k) {
-    if (!probe.rod.midpoint_step(probe.state, probe.memory, probe.options).sound) return Eigen::Vector2d::Constant(1.0);
+    if (!probe.rod.midpoint_step(probe.state, probe.memory, probe.options).sound)
+      return Eigen::Vector2d::Constant(1.0);
     const Momentum now = momentum_of(probe.rod.material, probe.state);
     drift[0] = std::max(drift[0], (now.linear - start.linear).norm() / start.linear.norm());
     drift[1] = std::max(drift[1], (now.angular - start.angular).norm() / start.angular.norm());

@@ -28,7 +28,8 @@ Eigen::Vector2d elliptic(double m) {
   return {K, K * (1.0 - sum)};
 }
 
-/// F h^2/(mu B) of an overhand knot of unknotting number 1 at h/e, e the shortening (the closed form of the paper's loop).
+/// F h^2/(mu B) of an overhand knot of unknotting number 1 at h/e, e the shortening (the closed form of the
+/// paper's loop).
 double jawed_force(double h_over_e) {
   double low = 0.01, high = 1.0 - 1e-12;
   double x = 0.0;
@@ -42,7 +43,8 @@ double jawed_force(double h_over_e) {
   return x * x * x / (96.0 * std::sqrt(3.0) * kPi * kPi);
 }
 
-/// Median of F/F_theory while the knot is drawn from h/e = 3e-3 to 1e-2; the pull slides the braid all the time.
+/// Median of F/F_theory while the knot is drawn from h/e = 3e-3 to 1e-2; the pull slides the braid all the
+/// time.
 double overhand_ratio() {
   constexpr double mu = 0.3;
   PulledKnot knot(201, mu, 1e-3);
@@ -52,10 +54,12 @@ double overhand_ratio() {
     if (!knot.pull(0.03).sound) return std::numeric_limits<double>::quiet_NaN();
     const double h_over_e = m.radius / knot.shortening();
     if (h_over_e > 1e-2) break;
-    if (h_over_e > 3e-3) ratios.push_back(knot.tension() * m.radius * m.radius / (mu * m.EI) / jawed_force(h_over_e));
+    if (h_over_e > 3e-3)
+      ratios.push_back(knot.tension() * m.radius * m.radius / (mu * m.EI) / jawed_force(h_over_e));
   }
   if (ratios.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2),
+                   ratios.end());
   return ratios[ratios.size() / 2];
 }
 
@@ -64,7 +68,9 @@ double overhand_ratio() {
 void list_knots(ProblemList& list) {
   ValidationProblem p;
   p.name = "overhand-knot-1";
-  p.source = "Jawed, Dieleman, Audoly & Reis, Phys. Rev. Lett. 115:118302, 2015; stated there for more crossings than the three here";
+  p.source =
+      "Jawed, Dieleman, Audoly & Reis, Phys. Rev. Lett. 115:118302, 2015; stated there for more crossings "
+      "than the three here";
   p.quantity = "median F/F_theory, n = 1, mu = 0.3, h/e from 0.003 to 0.01";
   p.expected = 1.0;
   p.tolerance = 0.4;

@@ -1,5 +1,6 @@
 #pragma once
-// Which of a list of problems or benches the user asked for: by name, or by the beginning of it up to a hyphen.
+// Which of a list of problems or benches the user asked for: by name, or by the beginning of it up to a
+// hyphen.
 
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ inline bool is_wanted(const std::vector<std::string>& asked, const std::string& 
 }
 
 /// Throws InputError for what stands for none.
-inline void check_names(const char* command, const std::vector<std::string>& asked, const std::vector<std::string>& names) {
+inline void check_names(const char* command, const std::vector<std::string>& asked,
+                        const std::vector<std::string>& names) {
   for (const std::string& a : asked) {
     bool known = false;
     std::string all;

@@ -17,10 +17,10 @@ struct ListedProblem {
 
 using ProblemList = std::vector<ListedProblem>;
 
-void list_elastica(ProblemList& list);   // bending at rest
-void list_dynamics(ProblemList& list);   // vibration, momentum
-void list_twist(ProblemList& list);      // twisting and its instabilities
-void list_friction(ProblemList& list);   // sliding on a plane and round a bar
-void list_knots(ProblemList& list);      // tight knots
+void list_elastica(ProblemList& list);  // bending at rest
+void list_dynamics(ProblemList& list);  // vibration, momentum
+void list_twist(ProblemList& list);     // twisting and its instabilities
+void list_friction(ProblemList& list);  // sliding on a plane and round a bar
+void list_knots(ProblemList& list);     // tight knots
 
 }  // namespace filum

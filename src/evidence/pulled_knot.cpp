@@ -59,6 +59,8 @@ double PulledKnot::shortening() const {
   return probe.state.rest_length.head(n - 1).sum() - (probe.state.x.col(n - 1) - probe.state.x.col(0)).norm();
 }
 
-double PulledKnot::tension() const { return edge_tension(probe.rod.material, probe.state, 2); }
+double PulledKnot::tension() const {
+  return edge_tension(probe.rod.material, probe.state, 2);
+}
 
 }  // namespace filum

@@ -5,8 +5,8 @@
 
 namespace filum {
 
-/// Nodes [m] of an open trefoil curve (Shastri, Tohoku Math. J. 44:11, 1992: polynomials of degree 3, 4 and 5) of the given
-/// length, evenly spaced along it.
+/// Nodes [m] of an open trefoil curve (Shastri, Tohoku Math. J. 44:11, 1992: polynomials of degree 3, 4 and
+/// 5) of the given length, evenly spaced along it.
 Points overhand_curve(int n, double length);
 
 /// The rod of Tong et al. (imc-der, arXiv 2205.10309): 1 m, radius 1.6 mm, 0.18 MPa, Poisson 0.5, 1180 kg/m3.
@@ -19,7 +19,7 @@ struct PulledKnot {
   double tension() const;     // [N], of the clamped tail
 
   RodProbe probe;
-  Vec3 direction;             // unit, from the first end to the last
+  Vec3 direction;  // unit, from the first end to the last
 };
 
 }  // namespace filum

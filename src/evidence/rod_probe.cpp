@@ -24,7 +24,8 @@ Points nodes_on_x(int n, double from, double edge) {
 
 RodProbe::RodProbe(const RodMaterial& material, const Points& nodes)
     : rod(material, ContactMaterial(), static_cast<int>(nodes.cols())),
-      state(RodState::from_nodes(nodes, static_cast<int>(nodes.cols()))), memory(rod.make_memory()) {
+      state(RodState::from_nodes(nodes, static_cast<int>(nodes.cols()))),
+      memory(rod.make_memory()) {
   rod.self_contact = false;
   options.gravity.setZero();
   options.max_iterations = 60;

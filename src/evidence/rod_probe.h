@@ -5,8 +5,8 @@
 
 namespace filum {
 
-/// Slender rod of bending stiffness `EI` [N m2] and twisting stiffness `GJ` [N m2] that hardly stretches: `thinness` is its
-/// length over its radius. Without drag and internal friction.
+/// Slender rod of bending stiffness `EI` [N m2] and twisting stiffness `GJ` [N m2] that hardly stretches:
+/// `thinness` is its length over its radius. Without drag and internal friction.
 RodMaterial slender_rod(double EI, double GJ, double length, double thinness, double mass_per_length);
 
 /// n nodes [m] on the x axis from `from`, `edge` apart.
@@ -24,7 +24,8 @@ struct RodProbe {
   void hold(int i);
   void hold_position(int i);
   void hold_angle(int j);
-  /// Backward Euler steps from rest, so long that inertia no longer counts, until nothing moves any more by `still` [m].
+  /// Backward Euler steps from rest, so long that inertia no longer counts, until nothing moves any more by
+  /// `still` [m].
   bool come_to_rest(double step_seconds, int most_steps, double still);
   double moment_at(int i) const;  // [N m], twisting moment at node i
 };

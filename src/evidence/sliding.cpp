@@ -15,9 +15,11 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWeight = 9.81;  // [N/kg]
 
-/// A straight 10 mm thread that lies on a level plane with friction 0.3, pulled along by `pull` times its weight.
+/// A straight 10 mm thread that lies on a level plane with friction 0.3, pulled along by `pull` times its
+/// weight.
 struct Sled {
-  explicit Sled(double pull) : probe(RodMaterial::round_wire(0.1e-3, 2.5e9, 0.35, 1140.0), nodes_on_x(kNodes, 0.0, 1e-3)) {
+  explicit Sled(double pull)
+      : probe(RodMaterial::round_wire(0.1e-3, 2.5e9, 0.35, 1140.0), nodes_on_x(kNodes, 0.0, 1e-3)) {
     probe.rod.material.drag = 0.0;
     probe.state.x.row(2).setConstant(0.1e-3);
     Obstacle plane;
@@ -28,7 +30,8 @@ struct Sled {
     probe.options.gravity = Vec3(0, 0, -kWeight);
     probe.options.dt = 1e-3;
     const double node = probe.rod.material.mass_per_length() * 1e-3 * kWeight * pull;
-    for (int i = 0; i < kNodes; ++i) probe.rod.boundary.load(0, i) = (i == 0 || i + 1 == kNodes ? 0.5 : 1.0) * node;
+    for (int i = 0; i < kNodes; ++i)
+      probe.rod.boundary.load(0, i) = (i == 0 || i + 1 == kNodes ? 0.5 : 1.0) * node;
   }
   /// Mean speed [m/s] over `steps` steps of 1 ms.
   double speed(int steps) {

@@ -16,7 +16,8 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Largest deviation of the twisting moment from M = C Th/L along a clamped rod that is pulled and turned at one end.
+/// Largest deviation of the twisting moment from M = C Th/L along a clamped rod that is pulled and turned at
+/// one end.
 double uniform_twist_error() {
   constexpr int n = 41;
   constexpr double edge = 1.0 / (n - 2), C = 0.7, turn = 3.0;  // 1 m between the middles of the clamped edges
@@ -44,19 +45,23 @@ void list_uniform_twist(ProblemList& list) {
 /// Flat ring of n edges and radius 1, cut and glued with the total twist `angle` [rad].
 bool ring_is_stable(int n, double angle, double B, double C) {
   Points nodes(3, n + 2);  // the first edge once more at the end
-  for (int i = 0; i < n + 2; ++i) nodes.col(i) = Vec3(std::cos(2 * kPi * i / n), std::sin(2 * kPi * i / n), 0.0);
+  for (int i = 0; i < n + 2; ++i)
+    nodes.col(i) = Vec3(std::cos(2 * kPi * i / n), std::sin(2 * kPi * i / n), 0.0);
   RodState s = RodState::from_nodes(nodes, n + 2);
   for (int j = 0; j <= n; ++j) s.theta[j] = angle * j / n;
-  Eigen::Array<bool, 4, Eigen::Dynamic> held = Eigen::Array<bool, 4, Eigen::Dynamic>::Constant(4, n + 2, false);
+  Eigen::Array<bool, 4, Eigen::Dynamic> held =
+      Eigen::Array<bool, 4, Eigen::Dynamic>::Constant(4, n + 2, false);
   for (int i : {0, 1, n, n + 1}) held.col(i).head<3>() = true;
   held(3, 0) = held(3, n) = true;
-  held(2, n / 2) = true;  // else the ring could turn freely about the glued edge while it rolls about its own axis
+  held(2, n / 2) =
+      true;  // else the ring could turn freely about the glued edge while it rolls about its own axis
   return is_stable(slender_rod(B, C, 2 * kPi, 2e3, 1.0), s, held);
 }
 
 double critical_ring_twist(int n, double C) {
   const double expected = 2.0 * kPi * std::sqrt(3.0) / C;
-  return critical_load(0.3 * expected, 2.0 * expected, [&](double angle) { return ring_is_stable(n, angle, 1.0, C); });
+  return critical_load(0.3 * expected, 2.0 * expected,
+                       [&](double angle) { return ring_is_stable(n, angle, 1.0, C); });
 }
 
 void list_ring(ProblemList& list, const char* label, double C, const char* ratio) {
@@ -74,8 +79,8 @@ void list_ring(ProblemList& list, const char* label, double C, const char* ratio
                   }});
 }
 
-/// Zero at the critical moment M of a straight rod of length 1 and B = 1 clamped at both ends under tension T: the
-/// determinant of w = w' = 0 at s = -1/2 and 1/2 for B w'''' - i M w''' - T w'' = 0.
+/// Zero at the critical moment M of a straight rod of length 1 and B = 1 clamped at both ends under tension
+/// T: the determinant of w = w' = 0 at s = -1/2 and 1/2 for B w'''' - i M w''' - T w'' = 0.
 double helix_determinant(double M, double T) {
   const double root = std::sqrt(0.25 * M * M - T), p = 0.5 * M + root, q = 0.5 * M - root, H = 0.5;
   return q * std::sin(q * H) * (std::sin(p * H) - p * H * std::cos(p * H)) -
@@ -116,7 +121,9 @@ void list_greenhill(ProblemList& list, double T) {
   char text[120];
   std::snprintf(text, sizeof text, "greenhill-%g", T);
   p.name = text;
-  p.source = "Greenhill 1883, B w'''' - i M w''' - T w'' = 0, both ends clamped (without tension tan x = x, M L/B = 2 x = 8.987)";
+  p.source =
+      "Greenhill 1883, B w'''' - i M w''' - T w'' = 0, both ends clamped (without tension tan x = x, M L/B = "
+      "2 x = 8.987)";
   std::snprintf(text, sizeof text, "M L/B at which a straight rod turns into a helix, T L^2/B = %g", T);
   p.quantity = text;
   p.expected = greenhill_moment(T);
@@ -128,7 +135,8 @@ void list_greenhill(ProblemList& list, double T) {
                   }});
 }
 
-/// Twisting moment of a long rod whose clamped ends came 3 closer and were turned by 27 turns against each other.
+/// Twisting moment of a long rod whose clamped ends came 3 closer and were turned by 27 turns against each
+/// other.
 double localized_moment(int n) {
   constexpr double L = 100.0, slack = 3.0, turns = 27.0;
   const double edge = L / (n - 2);
@@ -155,7 +163,9 @@ double localized_moment(int n) {
 void list_localized(ProblemList& list) {
   ValidationProblem p;
   p.name = "localized-helix";
-  p.source = "van der Heijden & Thompson, Nonlinear Dyn. 21:71, 2000: infinite rod, B 1.345 N m2, C 0.789 N m2, 100 m, 27 turns, 3 m shorter";
+  p.source =
+      "van der Heijden & Thompson, Nonlinear Dyn. 21:71, 2000: infinite rod, B 1.345 N m2, C 0.789 N m2, 100 "
+      "m, 27 turns, 3 m shorter";
   p.quantity = "twisting moment of the localized helix";
   p.unit = "N m";
   p.expected = 1.325383;

@@ -34,7 +34,8 @@ std::vector<std::string> validation_names() {
   return names;
 }
 
-std::vector<ValidationProblem> run_validation(const std::vector<std::string>& names, const ValidationProgress& progress) {
+std::vector<ValidationProblem> run_validation(const std::vector<std::string>& names,
+                                              const ValidationProgress& progress) {
   const ProblemList list = all_problems();
   check_names("validate", names, validation_names());
   std::vector<ValidationProblem> results;

@@ -1,6 +1,7 @@
 #pragma once
-// Validation: problems whose answer is known from theory or experiment, solved with the same code that the trainer runs.
-// The tolerance of each is stated with the problem, before it is solved; what misses it is reported as failed.
+// Validation: problems whose answer is known from theory or experiment, solved with the same code that the
+// trainer runs. The tolerance of each is stated with the problem, before it is solved; what misses it is
+// reported as failed.
 
 #include <functional>
 #include <optional>
@@ -11,16 +12,17 @@ namespace filum {
 
 struct ValidationProblem {
   std::string name;
-  std::string source;            // where `expected` comes from
+  std::string source;  // where `expected` comes from
   std::string quantity;
-  std::string unit = "1";        // a pure number, unless said otherwise
+  std::string unit = "1";  // a pure number, unless said otherwise
   double expected = 0.0, got = 0.0;
-  double error = 0.0;            // |got - expected|, relative to |expected| unless that is 0
-  double tolerance = 0.0;        // on `error`
-  std::optional<double> order;   // observed order of convergence in the edge length, where three resolutions were solved
+  double error = 0.0;      // |got - expected|, relative to |expected| unless that is 0
+  double tolerance = 0.0;  // on `error`
+  std::optional<double>
+      order;  // observed order of convergence in the edge length, where three resolutions were solved
   std::optional<double> least_order;  // that `order` must reach to pass
   bool passed = false;
-  double seconds = 0.0;          // it took to solve
+  double seconds = 0.0;  // it took to solve
 
   /// Fills error and passed from the rest.
   void judge();
@@ -30,8 +32,9 @@ using ValidationProgress = std::function<void(const ValidationProblem&)>;
 
 std::vector<std::string> validation_names();
 
-/// Solves the problems named (all if `names` is empty); a name also stands for every problem that begins with it and a hyphen.
-/// Calls `progress` after each. Throws InputError for a name that is none.
-std::vector<ValidationProblem> run_validation(const std::vector<std::string>& names, const ValidationProgress& progress = {});
+/// Solves the problems named (all if `names` is empty); a name also stands for every problem that begins with
+/// it and a hyphen. Calls `progress` after each. Throws InputError for a name that is none.
+std::vector<ValidationProblem> run_validation(const std::vector<std::string>& names,
+                                              const ValidationProgress& progress = {});
 
 }  // namespace filum

@@ -7,7 +7,9 @@
 namespace filum {
 namespace {
 
-DrivenTask no_task(const std::string& task) { throw InputError("test", "task", task, "none"); }
+DrivenTask no_task(const std::string& task) {
+  throw InputError("test", "task", task, "none");
+}
 
 TEST(Bench, TimesAreOrderedAndTheReferenceIsTimedBesideThem) {
   const auto results = run_benches({"scaling-50"}, no_task);
@@ -29,11 +31,17 @@ TEST(Bench, ANameStandsForThoseThatBeginWithIt) {
   EXPECT_EQ(run_benches({"scaling"}, no_task).size(), scaling);
 }
 
-TEST(Bench, AnUnknownNameIsRefused) { EXPECT_THROW(run_benches({"scal"}, no_task), InputError); }
+TEST(Bench, AnUnknownNameIsRefused) {
+  EXPECT_THROW(run_benches({"scal"}, no_task), InputError);
+}
 
-TEST(Bench, AMissingTaskIsToldByItsOpener) { EXPECT_THROW(run_benches({"task-knot-square"}, no_task), InputError); }
+TEST(Bench, AMissingTaskIsToldByItsOpener) {
+  EXPECT_THROW(run_benches({"task-knot-square"}, no_task), InputError);
+}
 
-TEST(Bench, TheMachineIsNamed) { EXPECT_NE(machine_text().find(" cores"), std::string::npos); }
+TEST(Bench, TheMachineIsNamed) {
+  EXPECT_NE(machine_text().find(" cores"), std::string::npos);
+}
 
 }  // namespace
 }  // namespace filum

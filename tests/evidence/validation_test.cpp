@@ -10,20 +10,22 @@
 namespace filum {
 namespace {
 
-/// A braid of three crossings is not the long one that the theory is for; it is reported as failed, and watched below.
+/// A braid of three crossings is not the long one that the theory is for; it is reported as failed, and
+/// watched below.
 constexpr const char* kOutsideTheory = "overhand-knot-1";
 
 class EveryProblem : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryProblem, IsWithinTheToleranceStatedWithIt) {
-  if (GetParam() == kOutsideTheory) GTEST_SKIP() << "reported as failed: outside the range of the theory; see the test below";
+  if (GetParam() == kOutsideTheory)
+    GTEST_SKIP() << "reported as failed: outside the range of the theory; see the test below";
   const auto solved = run_validation({GetParam()});
   bool found = false;
   for (const ValidationProblem& p : solved) {
     if (p.name != GetParam()) continue;
     found = true;
-    EXPECT_TRUE(p.passed) << p.quantity << ": expected " << p.expected << ", got " << p.got << ", error " << p.error
-                          << ", tolerance " << p.tolerance << ", order " << p.order.value_or(0.0);
+    EXPECT_TRUE(p.passed) << p.quantity << ": expected " << p.expected << ", got " << p.got << ", error "
+                          << p.error << ", tolerance " << p.tolerance << ", order " << p.order.value_or(0.0);
     EXPECT_FALSE(p.source.empty());
     EXPECT_FALSE(p.quantity.empty());
     EXPECT_FALSE(p.unit.empty());
@@ -33,17 +35,19 @@ TEST_P(EveryProblem, IsWithinTheToleranceStatedWithIt) {
   EXPECT_TRUE(found);
 }
 
-INSTANTIATE_TEST_SUITE_P(Validation, EveryProblem, testing::ValuesIn(validation_names()), [](const auto& info) {
-  std::string name = info.param;
-  for (char& c : name)
-    if (c == '-' || c == '.') c = '_';
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Validation, EveryProblem, testing::ValuesIn(validation_names()),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           for (char& c : name)
+                             if (c == '-' || c == '.') c = '_';
+                           return name;
+                         });
 
 TEST(Validation, TheOverhandKnotPullsAsInTheOneOtherCodeThatWasMeasured) {
   const auto solved = run_validation({kOutsideTheory});
   ASSERT_EQ(solved.size(), 1u);
-  EXPECT_GT(solved[0].got, 0.36);  // imc-der (Tong et al., arXiv 2205.10309) gave 0.36 to 0.80 of the theory for this knot
+  EXPECT_GT(solved[0].got,
+            0.36);  // imc-der (Tong et al., arXiv 2205.10309) gave 0.36 to 0.80 of the theory for this knot
   EXPECT_LT(solved[0].got, 0.80);
 }
 
