@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 
 #include "base/error.h"
 #include "cli/options.h"
@@ -18,11 +19,16 @@ HelloView hello_of(const TrainerOptions& options) {
   std::vector<std::string> problems;
   HelloView hello;
   hello.version = version();
+  bool any_shown = false;
   for (const Task& task : load_tasks(options.root, problems)) {
+    const bool shown = std::filesystem::exists(demonstration_file(options.root, task.name));
+    any_shown = any_shown || shown;
+    if (task.demonstration_only && !shown) continue;  // there is nothing to do in it
     hello.tasks.push_back({task.name, task.title, task.description, task.demonstration_only});
   }
   for (const std::string& problem : problems) std::fprintf(stderr, "filum: task left out: %s\n", problem.c_str());
-  hello.inputs = {"pointer", "demo"};
+  hello.inputs = {"pointer"};
+  if (any_shown) hello.inputs.emplace_back("demo");
   if (!options.serial_port.empty()) {
     hello.inputs.emplace_back("device");
     hello.devices.push_back({"serial " + options.serial_port, "waiting", 0, 0, 0, 0});

@@ -47,8 +47,8 @@ class Recorder {
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  // Called by one thread, the one that steps the world. None of these blocks, allocates or throws; false:
-  // queue full, counted.
+  // Each by one thread of its own choice (a queue for each kind of record). None blocks, allocates or throws;
+  // false: queue full, counted.
   bool record_step(const StepRecord& record) noexcept;
   bool record_event(const EventRecord& record) noexcept;
   bool record_array_hash(const ArrayHashRecord& record) noexcept;
