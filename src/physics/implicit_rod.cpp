@@ -71,6 +71,7 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
     advance(s, memory, o);
   }
   restore_rest(s);
+  summary.crowded = contact_.overflowed();
   summary.sound = std::isfinite(summary.residual) && theta_.head(s.n).allFinite() && x_.leftCols(s.n).allFinite();
   if (summary.sound) {
     finish(s, memory, o);

@@ -34,6 +34,7 @@ struct RodStepSummary {
   bool converged = false;
   bool arrived = true;                // bodies and prescribed nodes reached the end of their path
   bool sound = true;                  // false: a number was not finite; the state is the one before the step
+  bool crowded = false;               // more pairs of edges were near than there is room for: some were left out of contact
   int fallbacks = 0;                  // iterations that needed the Gauss-Newton stiffness
 };
 

@@ -105,8 +105,7 @@ class RodContact {
 
 /// Stiffness against tilting that a pressed contact has from its geometry: turning an edge about the point where it touches a
 /// body whose axis is `distance` away brings the axes closer by distance (1 - cos), which a force F opposes. It is the part
-/// -phi' B^T A^-1 B of the second derivative of a closest distance (envelope theorem; Choi, Tong, Jawed & Joo, J. Appl. Mech.
-/// 88:051008, 2021, take derivatives of the same distance) that is positive; on the normal displacement of the edge's ends,
+/// -phi' B^T A^-1 B of the second derivative of a closest distance (envelope theorem) that is positive; on the normal displacement of the edge's ends,
 /// one against the other. `crossing`: sine squared of the angle between the axes.
 inline double tilt_stiffness(double force, double distance, double edge_squared, double crossing) noexcept {
   return force * distance / (edge_squared * std::max(crossing, 0.2));

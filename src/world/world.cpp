@@ -191,7 +191,7 @@ void World::Impl::step_thread() noexcept {
   std::array<int, 3> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) before[i] = held_by(static_cast<int>(i));
   solver = rod.step(state.thread, state.memory, model->step);
-  if (!solver.sound || (!solver.converged && solver.residual > kTrouble)) event("solver-trouble", -1, solver.residual, "N");
+  if (!solver.sound || solver.crowded || (!solver.converged && solver.residual > kTrouble)) event("solver-trouble", -1, solver.residual, "N");
   for (std::size_t i = 0; i < commands.size(); ++i) {
     state.force[i] = rod.obstacles.bodies[i].force + rod.grasps.tools[i].force;
     state.torque[i] = rod.obstacles.bodies[i].torque + rod.grasps.tools[i].torque;
