@@ -23,37 +23,43 @@ Mat3 skew(const Vec3& v) noexcept {
   return m;
 }
 
-/// First derivatives of kappa_1, kappa_2 and twist of node i with respect to (x_{i-1}, theta^{i-1}, x_i, theta^i, x_{i+1}).
+/// First derivatives of the four curvatures and the twist of node i by (x_{i-1}, theta^{i-1}, x_i, theta^i, x_{i+1}).
 struct NodeGradient {
-  Vec12 kappa1 = Vec12::Zero(), kappa2 = Vec12::Zero(), twist = Vec12::Zero();
+  Eigen::Matrix<double, 12, 4> kappa = Eigen::Matrix<double, 12, 4>::Zero();
+  Vec12 twist = Vec12::Zero();
 };
 
-void scatter_edges(const Vec3& de, const Vec3& df, Vec12& out) noexcept {
-  out.segment<3>(0) = -de;
-  out.segment<3>(4) = de - df;
-  out.segment<3>(8) = df;
+template <typename Column>
+void scatter_edges(const Vec3& de, const Vec3& df, Column&& out) noexcept {
+  out.template segment<3>(0) = -de;
+  out.template segment<3>(4) = de - df;
+  out.template segment<3>(8) = df;
 }
 
-/// Shorthand of one inner node: tangents, directors and the tilde quantities of Bergou 2010.
+/// Shorthand of one inner node: tangents, directors and the tilde tangent of Bergou 2010.
 struct NodeFrame {
   NodeFrame(const RodGeometry& g, int i)
       : e(g.length[i - 1]), f(g.length[i]), chi(g.chi[i]), te(g.t.col(i - 1)), tf(g.t.col(i)), m1e(g.m1.col(i - 1)),
-        m2e(g.m2.col(i - 1)), m1f(g.m1.col(i)), m2f(g.m2.col(i)), kb(g.kb.col(i)), k1(g.kappa(0, i)), k2(g.kappa(1, i)),
-        tt((te + tf) / chi), d1((m1e + m1f) / chi), d2((m2e + m2f) / chi) {}
+        m2e(g.m2.col(i - 1)), m1f(g.m1.col(i)), m2f(g.m2.col(i)), kb(g.kb.col(i)), kappa(g.kappa.col(i)), tt((te + tf) / chi) {}
   double e, f, chi;
   Vec3 te, tf, m1e, m2e, m1f, m2f, kb;
-  double k1, k2;
-  Vec3 tt, d1, d2;
+  Eigen::Vector4d kappa;
+  Vec3 tt;
 };
 
 NodeGradient node_gradient(const NodeFrame& n) noexcept {
   NodeGradient d;
-  scatter_edges((-n.k1 * n.tt + n.tf.cross(n.d2)) / n.e, (-n.k1 * n.tt - n.te.cross(n.d2)) / n.f, d.kappa1);
-  scatter_edges((-n.k2 * n.tt - n.tf.cross(n.d1)) / n.e, (-n.k2 * n.tt + n.te.cross(n.d1)) / n.f, d.kappa2);
-  d.kappa1[3] = -0.5 * n.kb.dot(n.m1e);
-  d.kappa1[7] = -0.5 * n.kb.dot(n.m1f);
-  d.kappa2[3] = -0.5 * n.kb.dot(n.m2e);
-  d.kappa2[7] = -0.5 * n.kb.dot(n.m2f);
+  // kb.w for a director w that is carried along: kappa is kb.m2, kb.(-m1) on the edge before and on the edge behind.
+  const Vec3 w[4] = {n.m2e, -n.m1e, n.m2f, -n.m1f};
+  const double c = 2.0 / n.chi;
+  for (int k = 0; k < 4; ++k) {
+    const Vec3 along = -n.kappa[k] * n.tt, cw = c * w[k];
+    scatter_edges((along + n.tf.cross(cw)) / n.e, (along - n.te.cross(cw)) / n.f, d.kappa.col(k));
+  }
+  d.kappa(3, 0) = n.kappa[1];  // turning the directors by dtheta turns (kappa1, kappa2) by -dtheta
+  d.kappa(3, 1) = -n.kappa[0];
+  d.kappa(7, 2) = n.kappa[3];
+  d.kappa(7, 3) = -n.kappa[2];
   d.twist.segment<3>(0) = -0.5 / n.e * n.kb;
   d.twist.segment<3>(8) = 0.5 / n.f * n.kb;
   d.twist.segment<3>(4) = -d.twist.segment<3>(0) - d.twist.segment<3>(8);
@@ -62,24 +68,24 @@ NodeGradient node_gradient(const NodeFrame& n) noexcept {
   return d;
 }
 
-/// Adds c1 d2(kappa1) + c2 d2(kappa2) + ct d2(twist) of one node to h (lower and upper half).
-void add_second_derivative(const NodeFrame& n, double c1, double c2, double ct, Mat12& h) noexcept {
+/// Adds sum_k c_k d2(kappa_k) + ct d2(twist) of one node to h (lower and upper half).
+void add_second_derivative(const NodeFrame& n, const Eigen::Vector4d& c, double ct, Mat12& h) noexcept {
   const Mat3 I = Mat3::Identity();
   const Mat3 tt_tt = n.tt * n.tt.transpose();
   const Mat3 pe = I - n.te * n.te.transpose();
   const Mat3 pf = I - n.tf * n.tf.transpose();
   const double ee = 1.0 / (n.e * n.e), ff = 1.0 / (n.f * n.f), ef = 1.0 / (n.e * n.f);
-  const double k = c1 * n.k1 + c2 * n.k2;
-  // With D = c1 d2 - c2 d1 and m = c1 m2 - c2 m1 both curvature components share one set of formulas.
-  const Vec3 d = c1 * n.d2 - c2 * n.d1;
-  const Vec3 me = c1 * n.m2e - c2 * n.m1e;
-  const Vec3 mf = c1 * n.m2f - c2 * n.m1f;
+  const double k = c.dot(n.kappa);
+  // With me, mf the weighted directors the sum is kb.(me + mf), and all four curvatures share one set of formulas.
+  const Vec3 me = c[0] * n.m2e - c[1] * n.m1e;
+  const Vec3 mf = c[2] * n.m2f - c[3] * n.m1f;
+  const Vec3 d = 2.0 / n.chi * (me + mf);
   const Mat3 tf_d = n.tf.cross(d) * n.tt.transpose();
   const Mat3 te_d = n.te.cross(d) * n.tt.transpose();
   const Mat3 kb_e = n.kb * me.transpose();
   const Mat3 kb_f = n.kb * mf.transpose();
-  Mat3 Hee = ee * (2.0 * k * tt_tt - tf_d - tf_d.transpose() - k / n.chi * pe + 0.25 * (kb_e + kb_e.transpose()));
-  Mat3 Hff = ff * (2.0 * k * tt_tt + te_d + te_d.transpose() - k / n.chi * pf + 0.25 * (kb_f + kb_f.transpose()));
+  Mat3 Hee = ee * (2.0 * k * tt_tt - tf_d - tf_d.transpose() - k / n.chi * pe + 0.5 * (kb_e + kb_e.transpose()));
+  Mat3 Hff = ff * (2.0 * k * tt_tt + te_d + te_d.transpose() - k / n.chi * pf + 0.5 * (kb_f + kb_f.transpose()));
   Mat3 Hef = ef * (-k / n.chi * (I + n.te * n.tf.transpose()) + 2.0 * k * tt_tt - tf_d + te_d.transpose() - skew(d));
   const Mat3 kb_te = n.kb * (n.te + n.tt).transpose();
   const Mat3 kb_tf = n.kb * (n.tf + n.tt).transpose();
@@ -98,19 +104,18 @@ void add_second_derivative(const NodeFrame& n, double c1, double c2, double ct, 
   h.block<3, 3>(8, 8) += Hff;
 
   // Mixed with the angles: kappa1 pairs with m1, kappa2 with m2.
-  const Vec3 be = c1 * n.m1e + c2 * n.m2e;
-  const Vec3 bf = c1 * n.m1f + c2 * n.m2f;
+  const Vec3 be = c[0] * n.m1e + c[1] * n.m2e;
+  const Vec3 bf = c[2] * n.m1f + c[3] * n.m2f;
+  const double over = 2.0 / n.chi;
   Vec12 column = Vec12::Zero();
-  scatter_edges((0.5 * n.kb.dot(be) * n.tt - n.tf.cross(be) / n.chi) / n.e,
-                (0.5 * n.kb.dot(be) * n.tt + n.te.cross(be) / n.chi) / n.f, column);
+  scatter_edges((n.kb.dot(be) * n.tt - over * n.tf.cross(be)) / n.e, (n.kb.dot(be) * n.tt + over * n.te.cross(be)) / n.f, column);
   h.col(3) += column;
   h.row(3) += column.transpose();
-  scatter_edges((0.5 * n.kb.dot(bf) * n.tt - n.tf.cross(bf) / n.chi) / n.e,
-                (0.5 * n.kb.dot(bf) * n.tt + n.te.cross(bf) / n.chi) / n.f, column);
+  scatter_edges((n.kb.dot(bf) * n.tt - over * n.tf.cross(bf)) / n.e, (n.kb.dot(bf) * n.tt + over * n.te.cross(bf)) / n.f, column);
   h.col(7) += column;
   h.row(7) += column.transpose();
-  h(3, 3) -= 0.5 * n.kb.dot(me);
-  h(7, 7) -= 0.5 * n.kb.dot(mf);
+  h(3, 3) -= n.kb.dot(me);
+  h(7, 7) -= n.kb.dot(mf);
 }
 
 void scatter_node_block(const Mat12& h, int i, const ChainSlots& slots, BlockCholesky& matrix) noexcept {
@@ -172,7 +177,7 @@ RodState RodState::from_nodes(const Points& nodes, int capacity, bool naturally_
   s.x.leftCols(n) = nodes;
   s.v = Points::Zero(3, capacity);
   s.theta = s.theta_dot = s.ref_twist = s.rest_length = s.rest_twist = Eigen::VectorXd::Zero(capacity);
-  s.rest_kappa = Eigen::Matrix2Xd::Zero(2, capacity);
+  s.rest_kappa = Eigen::Matrix4Xd::Zero(4, capacity);
   s.d1 = Points::Zero(3, capacity);
   s.alive = Eigen::VectorXi::Ones(capacity);
   Vec3 t0 = (nodes.col(1) - nodes.col(0)).normalized();
@@ -198,7 +203,7 @@ RodState RodState::from_nodes(const Points& nodes, int capacity, bool naturally_
 
 RodGeometry::RodGeometry(int capacity)
     : length(Eigen::VectorXd::Zero(capacity)), t(Points::Zero(3, capacity)), d1(t), m1(t), m2(t), kb(t),
-      kappa(Eigen::Matrix2Xd::Zero(2, capacity)), chi(length), ref_twist(length), twist(length) {}
+      kappa(Eigen::Matrix4Xd::Zero(4, capacity)), chi(length), ref_twist(length), twist(length) {}
 
 void update_geometry(const RodState& reference, const Points& x, const Eigen::VectorXd& theta, RodGeometry& g) noexcept {
   const int n = reference.n;
@@ -221,8 +226,7 @@ void update_geometry(const RodState& reference, const Points& x, const Eigen::Ve
     g.chi[i] = std::max(1e-9, 1.0 + te.dot(tf));
     const Vec3 kb = 2.0 * te.cross(tf) / g.chi[i];
     g.kb.col(i) = kb;
-    g.kappa(0, i) = 0.5 * kb.dot(g.m2.col(i - 1) + g.m2.col(i));
-    g.kappa(1, i) = -0.5 * kb.dot(g.m1.col(i - 1) + g.m1.col(i));
+    g.kappa.col(i) << kb.dot(g.m2.col(i - 1)), -kb.dot(g.m1.col(i - 1)), kb.dot(g.m2.col(i)), -kb.dot(g.m1.col(i));
     // Reference twist: what parallel transport in space leaves between neighbouring directors, continuous in time.
     g.ref_twist[i] = reference_twist(g.d1.col(i - 1), te, g.d1.col(i), tf, reference.ref_twist[i]);
     g.twist[i] = theta[i] - theta[i - 1] + g.ref_twist[i];
@@ -239,7 +243,7 @@ double elastic_energy(const RodMaterial& m, const RodState& s, const RodGeometry
   for (int i = 1; i + 1 < s.n; ++i) {
     if (!joined(s, i)) continue;
     const double twist = g.twist[i] - s.rest_twist[i];
-    u += 0.5 / node_length(s, i) * (m.EI * (g.kappa.col(i) - s.rest_kappa.col(i)).squaredNorm() + m.GJ * twist * twist);
+    u += 0.5 / node_length(s, i) * (0.5 * m.EI * (g.kappa.col(i) - s.rest_kappa.col(i)).squaredNorm() + m.GJ * twist * twist);
   }
   return u;
 }
@@ -256,9 +260,9 @@ void add_elastic_gradient(const RodMaterial& m, const RodState& s, const RodGeom
     const NodeFrame frame(g, i);
     const NodeGradient d = node_gradient(frame);
     const double l = node_length(s, i);
-    const Eigen::Vector2d moment = m.EI / l * (g.kappa.col(i) - s.rest_kappa.col(i));
+    const Eigen::Vector4d moment = 0.5 * m.EI / l * (g.kappa.col(i) - s.rest_kappa.col(i));
     const double torque = m.GJ / l * (g.twist[i] - s.rest_twist[i]);
-    const Vec12 f = moment[0] * d.kappa1 + moment[1] * d.kappa2 + torque * d.twist;
+    const Vec12 f = d.kappa * moment + torque * d.twist;
     gradient.col(i - 1) += f.segment<4>(0);
     gradient.col(i) += f.segment<4>(4);
     gradient.col(i + 1) += f.segment<4>(8);
@@ -273,15 +277,12 @@ void add_elastic_hessian(const RodMaterial& m, const RodState& s, const RodGeome
     if (!joined(s, i)) continue;
     const NodeFrame frame(g, i);
     const NodeGradient d = node_gradient(frame);
-    const double kb = m.EI / node_length(s, i), kt = m.GJ / node_length(s, i);
+    const double kb = 0.5 * m.EI / node_length(s, i), kt = m.GJ / node_length(s, i);
     Mat12 h;
-    h.noalias() = (kb * d.kappa1) * d.kappa1.transpose();
-    h.noalias() += (kb * d.kappa2) * d.kappa2.transpose();
-    h.noalias() += (kt * d.twist) * d.twist.transpose();
-    if (kind == Stiffness::exact) {
-      const Eigen::Vector2d bend = kb * (g.kappa.col(i) - s.rest_kappa.col(i));
-      add_second_derivative(frame, bend[0], bend[1], kt * (g.twist[i] - s.rest_twist[i]), h);
-    }
+    h.noalias() = (kt * d.twist) * d.twist.transpose();
+    for (int k = 0; k < 4; ++k) h.noalias() += (kb * d.kappa.col(k)) * d.kappa.col(k).transpose();
+    if (kind == Stiffness::exact)
+      add_second_derivative(frame, kb * (g.kappa.col(i) - s.rest_kappa.col(i)), kt * (g.twist[i] - s.rest_twist[i]), h);
     scatter_node_block(h, i, slots, matrix);
   }
 }

@@ -4,10 +4,11 @@
 // Energy (Bergou, Wardetzky, Robinson, Audoly, Grinspun, "Discrete Elastic Rods", ACM TOG 27(3):63, 2008, and Bergou,
 // Audoly, Vouga, Wardetzky, Grinspun, "Discrete Viscous Threads", ACM TOG 29(4):116, 2010, sec. 4), edges e^j = x_{j+1}-x_j:
 //   U = sum_j  EA/2 (|e^j|/L^j - 1)^2 L^j
-//     + sum_i  EI/(2 l_i) |kappa_i - kappa0_i|^2 ,   kappa_i = (kb.(m2^{i-1}+m2^i)/2, -kb.(m1^{i-1}+m1^i)/2)
+//     + sum_i  EI/(4 l_i) sum_{j=i-1,i} |kappa_i^j - kappa0_i^j|^2 ,   kappa_i^j = (kb.m2^j, -kb.m1^j)   (2008, eq. 2)
 //     + sum_i  GJ/(2 l_i) (theta^i - theta^{i-1} + m_i - tau0_i)^2
 // with kb = 2 t^{i-1} x t^i / (1 + t^{i-1}.t^i) the curvature binormal, l_i = (L^{i-1}+L^i)/2 the node's length, m_i the
-// reference twist. Reference directors are carried in time by parallel transport from the last converged step.
+// reference twist. The mean of the squares over both edges, not the square of the mean (2010): a straight rod's bending stiffness
+// then does not depend on its twist. Reference directors are carried in time by parallel transport from the last converged step.
 // Valid: slender rod (radius << radius of curvature, Kirchhoff), linear material. Neglects: shear, plastic kinking.
 // Tests: elastic_rod_test (gradient and Hessian by differences, rigid motion, order 2 in bending and twist), `filum validate`.
 
@@ -45,7 +46,7 @@ struct RodState {
   Points d1;                          // unit, 3 x capacity, reference director of edge j, normal to its tangent
   Eigen::VectorXd ref_twist;          // [rad], node i (1 ... n-2): twist of the reference frame, continuous in time
   Eigen::VectorXd rest_length;        // [m], edge j, unstretched
-  Eigen::Matrix2Xd rest_kappa;        // [-], node i, integrated rest curvature (curvature x l_i)
+  Eigen::Matrix4Xd rest_kappa;        // [-], node i, integrated rest curvature (curvature x l_i), as RodGeometry::kappa
   Eigen::VectorXd rest_twist;         // [rad], node i
   Eigen::VectorXi alive;              // edge j: 1 whole, 0 parted (carries no force)
   double arc_start = 0.0;             // [m], material coordinate of node 0
@@ -61,7 +62,7 @@ struct RodGeometry {
   Eigen::VectorXd length;             // [m], edge
   Points t, d1, m1, m2;               // unit, edge: tangent, reference director, material directors
   Points kb;                          // [-], node: curvature binormal
-  Eigen::Matrix2Xd kappa;             // [-], node
+  Eigen::Matrix4Xd kappa;             // [-], node: curvature about m1, m2 of the edge before, then of the edge behind
   Eigen::VectorXd chi;                // 1 + t.t at each inner node
   Eigen::VectorXd ref_twist, twist;   // [rad], inner node
 };

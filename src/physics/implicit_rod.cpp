@@ -38,7 +38,7 @@ ImplicitRod::ImplicitRod(const RodMaterial& m, const ContactMaterial& c, int cap
     : material(m), contact_material(c), boundary(capacity), obstacles(8 * capacity), grasps(n_tools),
       contact_(capacity, 16 * capacity), geometry_(capacity), matrix_(capacity), x_(Points::Zero(3, capacity)), x_trial_(x_),
       theta_(Eigen::VectorXd::Zero(capacity)), theta_trial_(theta_), gradient_(Eigen::Matrix4Xd::Zero(4, capacity)),
-      move_(gradient_), boundary_move_(gradient_), stiffened_(m), rest_kappa_(Eigen::Matrix2Xd::Zero(2, capacity)), rest_twist_(theta_) {
+      move_(gradient_), boundary_move_(gradient_), stiffened_(m), rest_kappa_(Eigen::Matrix4Xd::Zero(4, capacity)), rest_twist_(theta_) {
   chain_.next.resize(static_cast<std::size_t>(capacity));
   chain_.second.resize(static_cast<std::size_t>(capacity));
 }

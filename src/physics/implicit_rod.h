@@ -102,7 +102,7 @@ class ImplicitRod {
   Eigen::VectorXd theta_, theta_trial_;
   Eigen::Matrix4Xd gradient_, move_, boundary_move_;
   RodMaterial stiffened_;                  // the material with what internal friction adds in this step
-  Eigen::Matrix2Xd rest_kappa_;            // rest shape proper, while the step works with the softened one
+  Eigen::Matrix4Xd rest_kappa_;            // rest shape proper, while the step works with the softened one
   Eigen::VectorXd rest_twist_;
   double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
   double travelled_ = 0.0;

@@ -91,7 +91,7 @@ void halve_edge(RodState& s, int j) noexcept {
   const double after = j + 2 < s.n ? s.rest_length[j + 1] : 0.0;
   // Rest curvature per length at both ends of the edge; the new node takes their mean, the ends what is left of their length.
   const double span_a = 0.5 * (before + l), span_b = 0.5 * (l + after);
-  const Eigen::Vector2d density_a = s.rest_kappa.col(j) / span_a, density_b = s.rest_kappa.col(j + 1) / span_b;
+  const Eigen::Vector4d density_a = s.rest_kappa.col(j) / span_a, density_b = s.rest_kappa.col(j + 1) / span_b;
   const double twist_a = s.rest_twist[j] / span_a, twist_b = s.rest_twist[j + 1] / span_b;
   shift_all(s, j + 1, j + 1, +1);
   ++s.n;

@@ -104,8 +104,8 @@ TEST(RodResolution, RestCurvatureStaysInTotal) {
   RodState s = helix(20, 300.0);
   std::mt19937 gen(1);
   std::normal_distribution<double> normal;
-  for (int i = 1; i < 19; ++i) s.rest_kappa.col(i) << normal(gen), normal(gen);
-  const Eigen::Vector2d before = s.rest_kappa.leftCols(20).rowwise().sum();
+  for (int i = 1; i < 19; ++i) s.rest_kappa.col(i) << normal(gen), normal(gen), normal(gen), normal(gen);
+  const Eigen::Vector4d before = s.rest_kappa.leftCols(20).rowwise().sum();
   remove_node(s, 6);
   EXPECT_NEAR((s.rest_kappa.leftCols(19).rowwise().sum() - before).norm(), 0.0, 1e-12);
   halve_edge(s, 10);
