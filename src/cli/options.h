@@ -32,6 +32,7 @@ void add_export(CLI::App& app, Action& action);
 void add_list(CLI::App& app, Action& action);
 void add_validate(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
+void add_analyse(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 
 /// --root and --json.

@@ -1,0 +1,121 @@
+// filum analyse FILE...: tremor, smoothness and grasp force of recordings, and how they go together.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "analysis/report.h"
+#include "base/error.h"
+#include "cli/options.h"
+#include "cli/session_files.h"
+#include "session/export.h"
+
+namespace filum {
+namespace {
+
+struct AnalyseOptions {
+  std::vector<std::string> files, reference;
+  std::string clamped, plot;
+  bool json = false;
+};
+
+const std::vector<double>* column(const Table& table, const std::string& name) {
+  for (const Column& c : table.columns)
+    if (c.name == name) return std::get_if<std::vector<double>>(&c.values);
+  return nullptr;
+}
+
+/// Where no device measured the squeeze, the simulated one is taken, by stepping the recording again.
+void add_simulated_grip(const RecordingReader& recording, RecordedSession& session) {
+  const auto measured = [](const ToolSeries& t) { return t.grip.source != "none"; };
+  if (std::any_of(session.tools.begin(), session.tools.end(), measured)) return;
+  const RecordedSetup recorded(recording);
+  World world(recorded.setup().model);
+  const Table table = simulated_table(recording, world);
+  const std::vector<double>* time = column(table, "time");
+  for (ToolSeries& tool : session.tools) {
+    const std::vector<double>* force = column(table, "tool" + std::to_string(tool.tool) + "_grip_force");
+    if (time && force) tool.grip = {*time, *time, *force, "simulation"};
+  }
+}
+
+RecordedSession open(const std::string& file) {
+  const RecordingReader recording(file);
+  RecordedSession session = read_session(recording);
+  add_simulated_grip(recording, session);
+  return session;
+}
+
+std::string shown(const nlohmann::ordered_json& value, double scale) {
+  if (!value.is_number()) return "not resolved";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", scale * value.get<double>());
+  return text;
+}
+
+void print_tremor(const nlohmann::ordered_json& t) {
+  std::printf("tremor, tool %d, %s space, %s: ", t["tool"].get<int>(), t["space"].get<std::string>().c_str(),
+              t["window"].get<std::string>().c_str());
+  if (!t["resolved"].get<bool>()) {
+    std::printf("not resolved: %s\n", t.value("why", "").c_str());
+  } else {
+    std::printf("peak %s Hz, width %s Hz\n", shown(t["peak_hz"], 1.0).c_str(), shown(t["half_power_width_hz"], 1.0).c_str());
+  }
+  if (!t["measured"].get<bool>()) return;
+  for (const auto& band : t["bands"])
+    std::printf("  %4.0f-%2.0f Hz  rms %s um  (noise floor %s um)\n", band["from_hz"].get<double>(), band["to_hz"].get<double>(),
+                shown(band["rms_m"], 1e6).c_str(), shown(band["noise_floor_rms_m"], 1e6).c_str());
+}
+
+void print_text(const nlohmann::ordered_json& report) {
+  for (const auto& t : report["tremor"]) print_tremor(t);
+  for (const auto& s : report["smoothness"]) {
+    if (!s.contains("sparc")) continue;
+    std::printf("smoothness, tool %d, %s space: SPARC %s, LDLJ %s (median of %d movements)\n", s["tool"].get<int>(),
+                s["space"].get<std::string>().c_str(), shown(s["sparc"]["median"], 1.0).c_str(),
+                shown(s["ldlj"]["median"], 1.0).c_str(), s["sparc"]["n"].get<int>());
+  }
+  for (const auto& g : report["grasp_force"]) {
+    if (!g.contains("summary")) continue;
+    std::printf("grasp force, tool %d (%s): %d grasps, peak %s N, excess over the slip limit %s N\n", g["tool"].get<int>(),
+                g["source"].get<std::string>().c_str(), g["grasps"].get<int>(), shown(g["summary"]["peak_n"]["median"], 1.0).c_str(),
+                shown(g["summary"]["excess_over_slip_limit_n"]["median"], 1.0).c_str());
+  }
+}
+
+int run(const AnalyseOptions& o) {
+  AnalysisInput input;
+  for (const std::string& file : o.files) input.sessions.push_back(open(file));
+  if (!o.clamped.empty()) input.clamped = open(o.clamped);
+  for (const std::string& file : o.reference) input.reference.push_back(open(file));
+  const AnalysisReport report = analyse(input, program_text());
+  if (!o.plot.empty()) {
+    std::ofstream plot(o.plot);
+    plot << scatter_svg(report.panels, o.files);
+    if (!plot.flush()) throw InputError("--plot", "file", o.plot, "a file that can be written");
+  }
+  if (o.json) {
+    print_json(report.json);
+  } else {
+    print_text(report.json);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_analyse(CLI::App& app, Action& action) {
+  auto o = std::make_shared<AnalyseOptions>();
+  CLI::App* command = app.add_subcommand("analyse", "Tremor, smoothness and grasp force of recordings");
+  command->add_option("files", o->files, "Recordings; several are also correlated with one another")->required();
+  command->add_option("--clamped", o->clamped, "Recording of the same device with the tool clamped: its noise floor");
+  command->add_option("--reference", o->reference, "Recordings of experts that the bands of grasp force come from");
+  command->add_option("--plot", o->plot, "Write scatter plots to this SVG file");
+  command->add_flag("--json", o->json, "Print one JSON document and nothing else");
+  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+}
+
+}  // namespace filum
