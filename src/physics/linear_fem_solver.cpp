@@ -82,7 +82,14 @@ Vec3 FemSystem<T>::unbalanced(int i, const Columns4& b, const Columns4& u) const
 template <class T>
 double FemSystem<T>::scale_of(const Columns4& b, const Columns4& u, std::span<const MovedNode> moved) const noexcept {
   double sum = b.squaredNorm();
-  for (const MovedNode& m : moved) sum += unbalanced(m.node, b, u).squaredNorm();
+  for (const MovedNode& m : moved) {
+    Vec3 force = unbalanced(m.node, b, u);
+    if (!m.prescribed) {  // what the mover gives once this node alone has followed it
+      const Vec3 wanted = m.target - u.col(m.node).template head<3>();
+      force += m.stiffness * (wanted - inverse_[static_cast<std::size_t>(m.node)] * (m.stiffness * wanted));
+    }
+    sum += force.squaredNorm();
+  }
   return std::sqrt(sum);
 }
 

@@ -1,0 +1,95 @@
+#include "collision/surface_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace filum {
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::max();
+
+}  // namespace
+
+SurfaceTree::SurfaceTree(std::vector<Triangle> triangles, const Points& nodes) : triangles_(std::move(triangles)), order_(triangles_.size()) {
+  std::iota(order_.begin(), order_.end(), 0);
+  Points centres(3, static_cast<int>(triangles_.size()));
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    centres.col(static_cast<int>(t)) = (nodes.col(triangles_[t][0]) + nodes.col(triangles_[t][1]) + nodes.col(triangles_[t][2])) / 3.0;
+  nodes_.reserve(triangles_.size() + 1);
+  nodes_.emplace_back();
+  if (!triangles_.empty()) cut(0, 0, static_cast<int>(triangles_.size()), centres);
+  refit(nodes);
+}
+
+void SurfaceTree::cut(int node, int first, int count, const Points& centres) {
+  if (count <= kLeaf) {
+    nodes_[static_cast<std::size_t>(node)].first = first;
+    nodes_[static_cast<std::size_t>(node)].count = count;
+    return;
+  }
+  Vec3 low = centres.col(order_[static_cast<std::size_t>(first)]), high = low;
+  for (int k = first; k < first + count; ++k) {
+    low = low.cwiseMin(centres.col(order_[static_cast<std::size_t>(k)]));
+    high = high.cwiseMax(centres.col(order_[static_cast<std::size_t>(k)]));
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  const auto begin = order_.begin() + first;
+  std::nth_element(begin, begin + count / 2, begin + count, [&](int a, int b) {
+    return centres(axis, a) != centres(axis, b) ? centres(axis, a) < centres(axis, b) : a < b;
+  });
+  const int children = static_cast<int>(nodes_.size());
+  nodes_.emplace_back();
+  nodes_.emplace_back();
+  nodes_[static_cast<std::size_t>(node)].first = children;
+  cut(children, first, count / 2, centres);
+  cut(children + 1, first + count / 2, count - count / 2, centres);
+}
+
+void SurfaceTree::refit(const Points& positions) noexcept {
+  constexpr float kRounding = 1e-6f;  // of the largest coordinate: more than float rounds away
+  for (std::size_t k = nodes_.size(); k-- > 0;) {
+    Node& n = nodes_[k];
+    n.low.fill(kFar);
+    n.high.fill(-kFar);
+    for (int t = n.first; t < n.first + n.count; ++t)
+      for (const int i : triangles_[static_cast<std::size_t>(order_[static_cast<std::size_t>(t)])]) {
+        const double* const p = positions.data() + 3 * static_cast<std::ptrdiff_t>(i);
+        for (std::size_t c = 0; c < 3; ++c) {
+          const auto x = static_cast<float>(p[c]);
+          n.low[c] = std::min(n.low[c], x - kRounding * std::abs(x));
+          n.high[c] = std::max(n.high[c], x + kRounding * std::abs(x));
+        }
+      }
+    if (n.count > 0 || triangles_.empty()) continue;
+    const Node &a = nodes_[static_cast<std::size_t>(n.first)], &b = nodes_[static_cast<std::size_t>(n.first) + 1];
+    for (std::size_t c = 0; c < 4; ++c) {
+      n.low[c] = std::min(a.low[c], b.low[c]);
+      n.high[c] = std::max(a.high[c], b.high[c]);
+    }
+  }
+}
+
+void SurfaceTree::overlaps(const Box& box, std::vector<int>& found) const noexcept {
+  if (triangles_.empty()) return;
+  std::array<int, 64> stack;  // deeper than the tree: median cuts halve the count
+  int depth = 0;
+  stack[static_cast<std::size_t>(depth++)] = 0;
+  while (depth > 0) {
+    const Node& n = nodes_[static_cast<std::size_t>(stack[static_cast<std::size_t>(--depth)])];
+    bool apart = false;
+    for (std::size_t c = 0; c < 3; ++c)
+      apart = apart || n.low[c] > box.high[static_cast<int>(c)] || n.high[c] < box.low[static_cast<int>(c)];
+    if (apart) continue;
+    if (n.count == 0) {
+      stack[static_cast<std::size_t>(depth++)] = n.first + 1;
+      stack[static_cast<std::size_t>(depth++)] = n.first;
+      continue;
+    }
+    for (int t = n.first; t < n.first + n.count && found.size() < found.capacity(); ++t) found.push_back(order_[static_cast<std::size_t>(t)]);
+  }
+}
+
+}  // namespace filum

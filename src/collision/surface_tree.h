@@ -1,0 +1,42 @@
+#pragma once
+// Tree of axis-aligned boxes over the triangles of a surface that deforms: the shape of the tree is chosen once (median cuts
+// of the rest shape), the boxes are refitted from the leaves up each step. Boxes are in float, widened by their rounding.
+// Measured beside FCL's trees by `filum bench blade-collision`; see DECISIONS.md for why this one is used.
+// Test: surface_tree_test.
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/tet_mesh.h"
+
+namespace filum {
+
+struct Box {
+  Vec3 low, high;
+};
+
+class SurfaceTree {
+ public:
+  SurfaceTree(std::vector<Triangle> triangles, const Points& nodes);
+
+  /// Boxes around the triangles at these positions [m]. Allocates nothing.
+  void refit(const Points& nodes) noexcept;
+  /// Appends the triangles whose leaf's box meets `box`, in a fixed order, up to the capacity of `found`.
+  void overlaps(const Box& box, std::vector<int>& found) const noexcept;
+  const std::vector<Triangle>& triangles() const noexcept { return triangles_; }
+
+ private:
+  static constexpr int kLeaf = 4;  // triangles
+  struct Node {
+    std::array<float, 4> low, high;
+    int first = 0, count = 0;  // leaf: triangles order_[first ...]; inner: children first and first + 1, count 0
+  };
+  void cut(int node, int first, int count, const Points& centres);
+
+  std::vector<Triangle> triangles_;
+  std::vector<int> order_;
+  std::vector<Node> nodes_;  // children come after their parent
+};
+
+}  // namespace filum
