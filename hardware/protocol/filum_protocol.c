@@ -77,6 +77,7 @@ static int payload_size_of(uint8_t type) {
     case FILUM_POSE: return FILUM_POSE_SIZE;
     case FILUM_PING: return FILUM_PING_SIZE;
     case FILUM_PONG: return FILUM_PONG_SIZE;
+    case FILUM_STATUS: return FILUM_STATUS_SIZE;
     default: return -1;
   }
 }
@@ -166,6 +167,17 @@ void filum_put_pong(filum_frame* frame, const filum_pong* pong) {
   put_u32(frame->payload + 4, pong->received_us);
 }
 
+void filum_put_status(filum_frame* frame, const filum_handle_status* status) {
+  uint8_t* p = frame->payload;
+  frame->type = FILUM_STATUS;
+  frame->size = FILUM_STATUS_SIZE;
+  put_u16(p, status->temperature);
+  p[2] = status->reset;
+  p[3] = status->room;
+  put_u16(p + 4, status->not_sent);
+  put_u16(p + 6, status->late);
+}
+
 bool filum_get_hello(const filum_frame* frame, filum_hello* hello) {
   const uint8_t* p = frame->payload;
   if (frame->type != FILUM_HELLO) return false;
@@ -208,5 +220,16 @@ bool filum_get_pong(const filum_frame* frame, filum_pong* pong) {
   if (frame->type != FILUM_PONG) return false;
   pong->host_us = get_u32(frame->payload);
   pong->received_us = get_u32(frame->payload + 4);
+  return true;
+}
+
+bool filum_get_status(const filum_frame* frame, filum_handle_status* status) {
+  const uint8_t* p = frame->payload;
+  if (frame->type != FILUM_STATUS) return false;
+  status->temperature = get_u16(p);
+  status->reset = p[2];
+  status->room = p[3];
+  status->not_sent = get_u16(p + 4);
+  status->late = get_u16(p + 6);
   return true;
 }

@@ -20,14 +20,15 @@ extern "C" {
 #define FILUM_MAX_WIRE (FILUM_MAX_ENCODED + 1u)  /* and the closing 0x00 */
 #define FILUM_TOOLS 3u
 
-enum filum_type { FILUM_HELLO = 1, FILUM_GRIP = 2, FILUM_POSE = 3, FILUM_PING = 4, FILUM_PONG = 5 };
+enum filum_type { FILUM_HELLO = 1, FILUM_GRIP = 2, FILUM_POSE = 3, FILUM_PING = 4, FILUM_PONG = 5, FILUM_STATUS = 6 };
 
 enum filum_payload_size {
   FILUM_HELLO_SIZE = 14,
   FILUM_GRIP_SIZE = 6,
   FILUM_POSE_SIZE = 30,
   FILUM_PING_SIZE = 4,
-  FILUM_PONG_SIZE = 8
+  FILUM_PONG_SIZE = 8,
+  FILUM_STATUS_SIZE = 8
 };
 
 /* Bits of filum_grip.flags */
@@ -88,6 +89,14 @@ typedef struct filum_pose {
 typedef struct filum_ping { uint32_t host_us; } filum_ping;             /* [us] host clock when sent */
 typedef struct filum_pong { uint32_t host_us, received_us; } filum_pong; /* ping's host_us; device clock at its arrival */
 
+typedef struct filum_handle_status {
+  uint16_t temperature;  /* [count] of the sensor beside the bridge; 0 where there is none */
+  uint8_t reset;         /* why the handle last started: 1 power, 2 reset pin, 4 brown-out, 8 watchdog */
+  uint8_t room;          /* [byte] least room its send buffer has had since the last status */
+  uint16_t not_sent;     /* frames for which there was no room since it started; wraps */
+  uint16_t late;         /* samples that were not ready in time since it started; wraps */
+} filum_handle_status;
+
 /* CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xFFFF, not reflected. "123456789" gives 0x29B1. */
 uint16_t filum_crc16(const uint8_t* data, size_t size);
 
@@ -107,6 +116,7 @@ void filum_put_grip(filum_frame* frame, const filum_grip* grip);
 void filum_put_pose(filum_frame* frame, const filum_pose* pose);
 void filum_put_ping(filum_frame* frame, const filum_ping* ping);
 void filum_put_pong(filum_frame* frame, const filum_pong* pong);
+void filum_put_status(filum_frame* frame, const filum_handle_status* status);
 
 /* False if the frame is of another type or names a tool that does not exist. */
 bool filum_get_hello(const filum_frame* frame, filum_hello* hello);
@@ -114,6 +124,7 @@ bool filum_get_grip(const filum_frame* frame, filum_grip* grip);
 bool filum_get_pose(const filum_frame* frame, filum_pose* pose);
 bool filum_get_ping(const filum_frame* frame, filum_ping* ping);
 bool filum_get_pong(const filum_frame* frame, filum_pong* pong);
+bool filum_get_status(const filum_frame* frame, filum_handle_status* status);
 
 #ifdef __cplusplus
 }

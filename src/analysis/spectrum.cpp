@@ -98,22 +98,25 @@ SpectralPeak peak_between(const Spectrum& s, double from, double to) {
   for (std::size_t k = 1; k + 1 < s.density.size(); ++k)
     if (s.frequency(k) >= from && s.frequency(k) <= to && (best == 0 || s.density[k] > s.density[best])) best = k;
   if (best == 0 || !(s.density[best] > 0.0)) return peak;
-  const double a = s.density[best - 1], b = s.density[best], c = s.density[best + 1];
+  // The main lobe of a Hann window is nearly a parabola in the logarithm.
+  const auto level = [&](std::size_t k) { return std::log(std::max(s.density[k], 1e-30 * s.density[best])); };
+  const double a = level(best - 1), b = level(best), c = level(best + 1);
   const double curve = a - 2.0 * b + c;
   const double shift = curve < 0.0 ? std::clamp(0.5 * (a - c) / curve, -0.5, 0.5) : 0.0;
   peak.frequency = s.frequency(best) + shift * s.df;
-  peak.density = b - 0.25 * (a - c) * shift;
+  peak.density = std::exp(b - 0.25 * (a - c) * shift);
+  const double half = std::log(0.5 * peak.density);
   const auto crossing = [&](int step) {
     for (std::size_t k = best; k > 0 && k + 1 < s.density.size(); k = k + static_cast<std::size_t>(step)) {
       const std::size_t next = k + static_cast<std::size_t>(step);
       if (s.density[next] > 0.5 * peak.density) continue;
-      const double share = (s.density[k] - 0.5 * peak.density) / (s.density[k] - s.density[next]);
+      const double share = (level(k) - half) / (level(k) - level(next));
       return s.frequency(k) + step * std::max(0.0, share) * s.df;
     }
     return kNaN;
   };
   peak.half_width = crossing(1) - crossing(-1);
-  peak.narrow = peak.half_width < 1.25 * s.resolution();
+  peak.narrow = peak.half_width < 1.5 * s.resolution();
   return peak;
 }
 

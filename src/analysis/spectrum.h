@@ -45,7 +45,7 @@ struct Interval {
 Interval band_power(const Spectrum& spectrum, double from, double to, double confidence = 0.95);
 
 struct SpectralPeak {
-  double frequency = 0.0;   // [Hz], parabola through the highest bin and its neighbours
+  double frequency = 0.0;   // [Hz], parabola through the logarithm of the highest bin and its neighbours
   double density = 0.0;     // [unit^2/Hz]
   double half_width = 0.0;  // [Hz], full width at half the density; NaN where it does not fall so far in the band
   bool narrow = false;      // the width is that of the window: the true one may be less

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   filum::add_validate(app, action);
   filum::add_bench(app, action);
   filum::add_analyse(app, action);
+  filum::add_calibrate(app, action);
   filum::add_doctor(app, action);
   const auto subcommands = app.get_subcommands([](CLI::App*) { return true; });
   const auto named = [&](const CLI::App* sub) { return sub->get_name() == argv[1]; };

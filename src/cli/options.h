@@ -33,6 +33,7 @@ void add_list(CLI::App& app, Action& action);
 void add_validate(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 void add_analyse(CLI::App& app, Action& action);
+void add_calibrate(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 
 /// --root and --json.

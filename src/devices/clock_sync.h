@@ -43,4 +43,31 @@ class ClockSync {
   std::size_t n_ = 0;
 };
 
+/// Rate of a device's clock against the host's: the exchange with the shortest round trip of every kPerPoint gives one
+/// offset; a least-squares line through the newest kPoints of them gives offset and drift. The uncertainty is that of the
+/// line's slope from its residuals (one standard deviation); a constant asymmetry of the line's two ways shifts the offset
+/// and leaves the drift alone.
+class ClockDrift {
+ public:
+  void pong(std::int64_t sent_us, std::int64_t device_us, std::int64_t back_us) noexcept;
+  void restart() noexcept { n_ = in_point_ = 0; }
+
+  bool known() const noexcept { return n_ >= 3; }
+  struct Line {
+    double offset_us = 0.0;           // [us], device minus host, at `host_us`
+    double drift_ppm = 0.0;           // [1e-6], device faster than the host
+    double drift_uncertainty_ppm = 0.0;
+  };
+  Line at(std::int64_t host_us) const noexcept;
+
+ private:
+  static constexpr std::size_t kPoints = 64, kPerPoint = 4;
+  struct Point {
+    std::int64_t host = 0, offset = 0, trip = 0;  // [us]
+  };
+  std::array<Point, kPoints> points_{};
+  std::size_t n_ = 0, in_point_ = 0;
+  Point best_;
+};
+
 }  // namespace filum

@@ -3,9 +3,16 @@
 // filum-forceps/1).
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace filum {
+
+/// What a fit said of one channel; absent in a nominal file.
+struct ChannelEvidence {
+  double residual = 0.0, hysteresis = 0.0, repeatability = 0.0;  // [rad] or [N], see calibration_fit.h
+  double from = 0.0, to = 0.0;                                   // [rad] or [N], range of validity
+};
 
 struct ForcepsCalibration {
   std::string name;
@@ -17,6 +24,8 @@ struct ForcepsCalibration {
   double force_zero = 0.0;         // [count] without load
   double force_gain = 0.0;         // [N/count]
   double force_uncertainty = 0.0;  // [N], one standard deviation
+  std::string date, sensor;        // when, and serial number of the handle; empty in a nominal file
+  std::optional<ChannelEvidence> angle_evidence, force_evidence;
   double angle_limit = 0.0;        // [rad], mechanical stop
   double force_limit = 0.0;        // [N], above this the sensor is overloaded
 

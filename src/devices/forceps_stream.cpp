@@ -61,6 +61,7 @@ void ForcepsStream::restart() noexcept {
   sources_ = {};
   buttons_ = {};
   clock_.restart();
+  drift_.restart();
 }
 
 bool ForcepsStream::calibration_differs() const noexcept {
@@ -93,6 +94,10 @@ bool ForcepsStream::follow(Source& from, const filum_frame& frame) noexcept {
     if (!late) lost_ += step - 1u;
   }
   if (!from.used || powered_up || ran_back || late) {
+    if (from.used && !late) {  // started again: its clock began anew
+      clock_.restart();
+      drift_.restart();
+    }
     from.used = true;
     from.sequence = frame.sequence;
     from.clock.restart();
@@ -117,17 +122,21 @@ void ForcepsStream::on_frame(const filum_frame& frame, std::int64_t now_us,
   filum_pose pose;
   filum_hello hello;
   filum_pong pong;
+  filum_handle_status status;
   if (filum_get_grip(&frame, &grip)) {
     on_grip(*from, grip, now_us, out);
   } else if (filum_get_pose(&frame, &pose)) {
     on_pose(*from, pose, now_us, out);
   } else if (filum_get_hello(&frame, &hello)) {
     hello_ = hello;
+  } else if (filum_get_status(&frame, &status)) {
+    status_ = status;
   } else if (filum_get_pong(&frame, &pong)) {
     const std::int64_t sent =
         now_us - static_cast<std::int32_t>(static_cast<std::uint32_t>(now_us) - pong.host_us);
     const std::int64_t device = from->time_us - static_cast<std::int32_t>(frame.time_us - pong.received_us);
     clock_.pong(sent, device, now_us);
+    drift_.pong(sent, device, now_us);
   } else {
     ++rejected_;  // a tool that does not exist, or a ping, which only the trainer sends
   }

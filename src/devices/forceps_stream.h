@@ -34,10 +34,13 @@ class ForcepsStream {
   std::optional<std::int64_t> last_frame_us() const noexcept { return last_frame_us_; }
   /// The last hello of any device on the link.
   const std::optional<filum_hello>& hello() const noexcept { return hello_; }
+  /// The last status of any device on the link.
+  const std::optional<filum_handle_status>& status() const noexcept { return status_; }
   /// True when a handle says it was calibrated and the file in use is for another one.
   bool calibration_differs() const noexcept;
   /// Offset of the clock of the device that answered last.
   const ClockSync& clock() const noexcept { return clock_; }
+  const ClockDrift& drift() const noexcept { return drift_; }
   const ForcepsCalibration& calibration() const noexcept { return calibration_; }
 
  private:
@@ -66,7 +69,9 @@ class ForcepsStream {
   std::uint64_t received_ = 0, lost_ = 0, rejected_ = 0;
   std::optional<std::int64_t> last_frame_us_;
   std::optional<filum_hello> hello_;
+  std::optional<filum_handle_status> status_;
   ClockSync clock_;
+  ClockDrift drift_;
 };
 
 /// A pose as its frame carries it, and back; absent where it is not to be trusted (untracked, out of reach,

@@ -18,7 +18,7 @@
 //       - { t: 3 s, arc: { centre: [0 mm, 0 mm, 5 mm], axis: [0, 1, 0], turns: -1.25, rise: 1 mm } }
 // A key without p, handle, opening or grip keeps that of the key before. A grip below zero squeezes beyond
 // closure. grip_force is optional, for all keys of a tool or none. An arc key without p ends where its turns,
-// radius (default: unchanged) and rise (default: 0) lead.
+// radius (default: unchanged) and rise (default: 0) lead. A tool may have `tremor: { rms: 60 um, frequency: 9 Hz, width: 2 Hz }`.
 
 namespace filum {
 namespace {
@@ -137,7 +137,13 @@ PoseTrack read_tool(const YamlNode& node) {
   std::vector<PoseKey> keys;
   for (const YamlNode& item : node.items("keys")) keys.push_back(reader.read(item, keys.empty()));
   if (keys.empty()) node.refuse("keys", "at least one key");
-  return PoseTrack(tool, std::move(keys), reader.has_force());
+  PoseTrack track(tool, std::move(keys), reader.has_force());
+  if (node.has("tremor")) {
+    const YamlNode tremor = node.map("tremor");
+    track.shake({tremor.quantity("rms", "m", {0.0, 1e-3, false}), tremor.quantity("frequency", "Hz", {1.0, 30.0, false}),
+                 tremor.quantity("width", "Hz", {0.0, 5.0, false})});
+  }
+  return track;
 }
 
 }  // namespace

@@ -94,6 +94,12 @@ Vec3 PoseTrack::tip_in_segment(std::size_t i, double u) const noexcept {
 }
 
 DeviceSample PoseTrack::at(double t) const noexcept {
+  DeviceSample sample = steady_at(t);
+  if (tremor_) sample.X_WD.p += tremor_->at(t);
+  return sample;
+}
+
+DeviceSample PoseTrack::steady_at(double t) const noexcept {
   const std::size_t i = key_at(t);
   const PoseKey& a = keys_[i];
   DeviceSample sample;

@@ -10,6 +10,7 @@
 
 #include "base/pose.h"
 #include "devices/device.h"
+#include "devices/hand_tremor.h"
 
 namespace filum {
 
@@ -51,6 +52,9 @@ class PoseTrack {
  public:
   PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force);
 
+  /// Adds a tremor to the tip from now on.
+  void shake(const HandTremor& tremor) { tremor_ = tremor; }
+
   int tool() const noexcept { return tool_; }
   const std::vector<PoseKey>& keys() const noexcept { return keys_; }
   /// Sample at time t [s]; before the first key the first pose, after the last key the last.
@@ -59,11 +63,13 @@ class PoseTrack {
   std::size_t key_at(double t) const noexcept;
 
  private:
+  DeviceSample steady_at(double t) const noexcept;
   Vec3 tip_in_segment(std::size_t i, double u) const noexcept;
 
   int tool_;
   std::vector<PoseKey> keys_;
   bool has_grip_force_;
+  std::optional<HandTremor> tremor_;
   std::vector<Vec3> tip_slopes_;      // [m/s]
   std::vector<double> angle_slopes_;  // [rad/s]
   std::vector<double> force_slopes_;  // [N/s]

@@ -64,6 +64,13 @@ struct Measures {
   double both_moving = 0.0;   // share of time
   double speed_correlation = 0.0;
   double speed_lag = 0.0;  // [s]
+  bool laboratory = false;       // the six below were asked for; NaN where there was nothing to measure
+  double target_error = 0.0;     // [m], root mean square distance from the target
+  double target_longest = 0.0;   // [m]
+  double on_target = 0.0;        // share of the time within reach
+  double force_share = 0.0;      // largest squeeze on an object over its strength
+  double force_excess = 0.0;     // [N], mean squeeze over the least that holds
+  int objects_broken = 0;
   double dominance = 0.0;  // share of the right-hand instrument in the path
 };
 

@@ -56,7 +56,7 @@ Json report_json(const KnotReport& k) {
 }
 
 Json measures_json(const Measures& m) {
-  return {{"time_s", finite(m.seconds)},
+  Json json = {{"time_s", finite(m.seconds)},
           {"throws", m.throws},
           {"short_tail_m", finite(m.short_tail)},
           {"long_tail_m", finite(m.long_tail)},
@@ -77,6 +77,14 @@ Json measures_json(const Measures& m) {
           {"speed_correlation", finite(m.speed_correlation)},
           {"speed_lag_s", finite(m.speed_lag)},
           {"dominance_share", finite(m.dominance)}};
+  if (!m.laboratory) return json;
+  json["target_error_m"] = finite(m.target_error);
+  json["target_longest_m"] = finite(m.target_longest);
+  json["on_target_share"] = finite(m.on_target);
+  json["force_share"] = finite(m.force_share);
+  json["force_excess_n"] = finite(m.force_excess);
+  json["objects_broken"] = m.objects_broken;
+  return json;
 }
 
 Json events_json(const std::vector<TaskEvent>& events) {

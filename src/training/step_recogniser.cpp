@@ -41,6 +41,8 @@ const char* event_name(StepKind kind) {
       return "throw-tightened";
     case StepKind::cut:
       return "tails-cut";
+    default:
+      return "";  // the laboratory's steps are announced by LabWatch
   }
   return "";
 }
@@ -133,6 +135,8 @@ bool StepRecogniser::fulfilled(const TaskStep& step, const Observation& o) const
              knot_turns_ <= r.tight_turns;
     case StepKind::cut:
       return o.cut_edge_low >= 0 && o.cut_edge_high >= 0;
+    default:
+      return false;
   }
   return false;
 }

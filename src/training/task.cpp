@@ -32,6 +32,12 @@ constexpr std::array kMeasures = {
     MeasureName{Measure::drops, "drops", "-"},
     MeasureName{Measure::thread_overload, "thread-overload", "-"},
     MeasureName{Measure::both_moving, "both-moving", "-"},
+    MeasureName{Measure::target_error, "target-error", "m"},
+    MeasureName{Measure::target_longest, "target-longest", "m"},
+    MeasureName{Measure::on_target, "on-target", "-"},
+    MeasureName{Measure::force_share, "force-share", "-"},
+    MeasureName{Measure::force_excess, "force-excess", "N"},
+    MeasureName{Measure::objects_broken, "objects-broken", "-"},
 };
 
 const MeasureName& entry_of(Measure measure) {
@@ -56,6 +62,38 @@ TaskStep parse_step(const YamlNode& node, int throws) {
   step.throw_number = step.kind == StepKind::cut ? 0 : node.integer("throw", 1, throws);
   step.name = node.text("name");
   step.hint = node.text("hint");
+  return step;
+}
+
+/// "[x, y, z]" points, at least two, none twice in a row.
+Points parse_path(const YamlNode& node) {
+  std::vector<Vec3> points;
+  for (const YamlNode& point : node.items("path")) points.push_back(point.vec3("p", "mm"));
+  if (points.size() < 2) node.refuse("path", "at least two points");
+  Points path(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    path.col(static_cast<Eigen::Index>(k)) = points[k];
+    if (k > 0 && (points[k] - points[k - 1]).norm() < 1e-6) node.refuse("path", "no point twice in a row");
+  }
+  return path;
+}
+
+TaskStep parse_lab_step(const YamlNode& node) {
+  TaskStep step;
+  const std::string kind = node.choice("kind", {"hold", "follow", "place"});
+  step.throw_number = 0;
+  step.name = node.text("name");
+  step.hint = node.text("hint");
+  step.within = node.quantity("within", "mm", {1e-6, 0.1, false});
+  if (kind == "follow") {
+    step.kind = StepKind::follow;
+    step.path = parse_path(node);
+    return step;
+  }
+  step.at = node.vec3("at", "mm");
+  step.kind = kind == "hold" ? StepKind::hold : StepKind::place;
+  if (step.kind == StepKind::hold) step.seconds = node.quantity("seconds", "s", Range::between(1.0, 600.0));
+  if (step.kind == StepKind::place) step.object = node.integer("object", 0, 7);
   return step;
 }
 
@@ -161,11 +199,18 @@ Task parse_task(const YamlNode& file) {
   task.suture = file.text("suture");
   task.demonstration_only = file.flag_or("demonstration_only", false);
   task.time_limit = file.quantity("time_limit", "s", Range::between(1.0, 3600.0));
-  task.accept = parse_accept(file);
-  task.throws = file.integer("throws", 1, 4);
+  task.laboratory = file.has("kind") && file.choice("kind", {"knot", "laboratory"}) == "laboratory";
+  if (task.laboratory) {
+    task.lab_tool = file.integer("tool", 0, 2);
+    task.throws = 0;
+  } else {
+    task.accept = parse_accept(file);
+    task.throws = file.integer("throws", 1, 4);
+  }
   task.required_security = file.quantity_or("required_security", "N", 0.0, Range::not_negative());
   if (file.has("recognition")) task.recognition = parse_recognition(file.map("recognition"));
-  for (const YamlNode& node : file.items("steps")) task.steps.push_back(parse_step(node, task.throws));
+  for (const YamlNode& node : file.items("steps")) 
+    task.steps.push_back(task.laboratory ? parse_lab_step(node) : parse_step(node, task.throws));
   for (const YamlNode& node : file.items("rubric")) task.rubric.push_back(parse_item(node));
   if (task.steps.empty()) file.refuse("steps", "at least one step");
   if (task.rubric.empty()) file.refuse("rubric", "at least one line");

@@ -10,13 +10,19 @@
 
 namespace filum {
 
-enum class StepKind { loop, pass, lay, tighten, cut };
+enum class StepKind { loop, pass, lay, tighten, cut, hold, follow, place };
 
 struct TaskStep {
   StepKind kind = StepKind::loop;
   int throw_number = 1;  // from 1; 0 for cut
   std::string name;      // for people
   std::string hint;
+  // Of the laboratory's steps (training/lab_watch.h), frame W:
+  Vec3 at = Vec3::Zero();  // [m], hold, place
+  double within = 0.0;     // [m], reach of the target
+  double seconds = 0.0;    // [s], hold
+  Points path;             // [m], 3 x n, follow
+  int object = 0;          // place
 };
 
 /// What a rubric line looks at; the SI unit of its value is unit_of(measure).
@@ -35,6 +41,12 @@ enum class Measure {
   drops,
   thread_overload,
   both_moving,
+  target_error,
+  target_longest,
+  on_target,
+  force_share,
+  force_excess,
+  objects_broken,
 };
 const char* name_of(Measure measure);
 const char* unit_of(Measure measure);
@@ -68,6 +80,8 @@ struct Task {
   std::string name, title, description;
   std::string suture;               // model name
   bool demonstration_only = false;  // never passes
+  bool laboratory = false;          // no knot: hold, follow, place
+  int lab_tool = 0;                 // whose tip is watched
   double time_limit = 600.0;        // [s], scored time that is recorded
   std::vector<std::string> accept;  // knot classes that pass
   int throws = 2;                   // throws that the knot has

@@ -24,6 +24,7 @@ TaskSession::TaskSession(Task task, const SceneDescription& scene)
     : task_(std::move(task)),
       scene_(scene),
       recogniser_(task_, scene_),
+      lab_(task_, scene_),
       log_(scene.n_tools, task_.time_limit) {
   events_.reserve(kMaxEvents);
   for (auto& kind : last_kept_) kind.fill(-1.0);
@@ -84,7 +85,11 @@ void TaskSession::observe(const Observation& o) noexcept {
       elapsed_ += dt;
       take_sample(o);
     }
-    recogniser_.observe(o, events_);
+    if (task_.laboratory) {
+      lab_.observe(o, dt, !paused_, events_);
+    } else {
+      recogniser_.observe(o, events_);
+    }
   } catch (...) {
     failed_ = true;
   }
@@ -109,7 +114,7 @@ std::vector<TaskWarning> TaskSession::warnings() const {
   }
   const std::string& seen = recogniser_.knot_class();
   const bool accepted = std::find(task_.accept.begin(), task_.accept.end(), seen) != task_.accept.end();
-  if (recogniser_.n_throws() >= task_.throws && !accepted) {
+  if (!task_.laboratory && recogniser_.n_throws() >= task_.throws && !accepted) {
     list.push_back(
         {"warn", "wrong-knot", "The knot now is: " + seen + ". Asked for: " + task_.accept.front() + "."});
   }
@@ -121,7 +126,7 @@ std::vector<TaskWarning> TaskSession::warnings() const {
 
 TaskStatus TaskSession::status() const {
   TaskStatus s;
-  s.step_index = recogniser_.step();
+  s.step_index = task_.laboratory ? lab_.step() : recogniser_.step();
   for (const TaskStep& step : task_.steps) s.steps.push_back(step.name);
   s.done = done();
   if (s.done) {
@@ -157,7 +162,7 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
   r.seconds = elapsed_;
   r.security = security;
   r.events = events_;
-  if (observed_) {
+  if (observed_ && !task_.laboratory) {
     const ThreadPart part = tied_part(last_);
     const Points nodes = last_.positions.middleCols(part.first, std::max(0, part.nodes()));
     r.knot = classify_knot(nodes, last_.radius, scene_.has_post ? &scene_.post : nullptr);
@@ -166,6 +171,15 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
   r.measures = measure(log_, events_, scene_.thread_strength);
   r.measures.seconds = elapsed_;
   r.measures.throws = r.knot.n_throws;
+  if (task_.laboratory) {
+    r.measures.laboratory = true;
+    r.measures.target_error = lab_.target_error();
+    r.measures.target_longest = lab_.target_longest();
+    r.measures.on_target = lab_.on_target();
+    r.measures.force_share = lab_.force_share();
+    r.measures.force_excess = lab_.force_excess();
+    r.measures.objects_broken = lab_.broken();
+  }
   measure_tails(r.knot, r.measures);
   score(task_, last_.broken, r);
   if (failed_) r.verdict.push_back("scoring stopped early: out of memory");

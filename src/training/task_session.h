@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "training/lab_watch.h"
 #include "training/result.h"
 #include "training/series_log.h"
 #include "training/step_recogniser.h"
@@ -44,7 +45,7 @@ class TaskSession {
   /// Events since the start, in order, at most kMaxEvents of the world's. Events that may come every step
   /// ("overrun", "slip", "solver-trouble", "thread-overload") are kept once every kEventPause for each tool.
   const std::vector<TaskEvent>& events() const { return events_; }
-  bool done() const { return recogniser_.done(); }
+  bool done() const { return task_.laboratory ? lab_.done() : recogniser_.done(); }
   const Task& task() const { return task_; }
 
   /// Classifies the knot anew and scores. May be called again, e.g. once the security test has been made.
@@ -64,6 +65,7 @@ class TaskSession {
   Task task_;
   SceneDescription scene_;
   StepRecogniser recogniser_;
+  LabWatch lab_;  // of the laboratory's tasks, in place of the recogniser
   SeriesLog log_;
   std::vector<TaskEvent> events_;
   Observation last_;  // newest

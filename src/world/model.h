@@ -6,6 +6,7 @@
 
 #include "physics/implicit_rod.h"
 #include "physics/instrument.h"
+#include "physics/pellet.h"
 #include "physics/rod_resolution.h"
 #include "world/observation.h"
 
@@ -23,6 +24,7 @@ struct Model {
   RodStepOptions step;
   std::vector<InstrumentParameters> instruments;
   std::vector<Pose> instrument_start;
+  std::vector<PelletParameters> pellets;  // small objects to be picked up; most scenes have none
   std::vector<std::string> sources;  // files it was read from, relative to the root
 };
 

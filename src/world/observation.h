@@ -26,11 +26,19 @@ struct ToolObservation {
 
 /// Something that happened in a step. `name` is one of the constants in kEventNames (static storage).
 struct WorldEvent {
-  const char* name = "";          // "grasp", "release", "drop", "cut", "thread-break", "thread-overload", "overrun", "solver-trouble", "input-lost", "input-back"
+  const char* name = "";          // "grasp", "release", "drop", "cut", "thread-break", "thread-overload", "overrun", "solver-trouble", "input-lost", "input-back", "object-taken" (value: least squeeze that holds), "object-released", "object-slipped", "object-broken" (value: squeeze)
   int tool = -1;                  // tool index or -1
   double value = 0.0;             // what the event measured, unit below
   const char* unit = "-";
 };
+
+/// A small object to be picked up.
+struct PelletObservation {
+  Vec3 p_W = Vec3::Zero();        // [m], centre
+  int holder = -1;                // tool that holds it, -1 none
+  bool broken = false;
+};
+inline constexpr int kMaxPellets = 8;
 
 struct Observation {
   std::uint64_t step = 0;
@@ -47,6 +55,8 @@ struct Observation {
   int cut_edge_high = -1;         // and near the long end
   int n_tools = 0;
   std::array<ToolObservation, 3> tools;
+  int n_pellets = 0;
+  std::array<PelletObservation, kMaxPellets> pellets;
   int n_contacts = 0;             // self-contacts
   double min_gap = 0.0;           // [m], smallest surface distance between strands (negative: compressed)
   int newton_iterations = 0;
@@ -77,6 +87,14 @@ struct ToolShape {
   double max_angle = 0.5;         // [rad]
 };
 
+/// Constant part of a small object.
+struct PelletShape {
+  std::string name;
+  double radius = 0.0;            // [m]
+  double slip_limit = 0.0;        // [N], least squeeze that picks it up
+  double strength = 0.0;          // [N], squeeze that breaks it
+};
+
 /// Constant description of the scene for those who only look.
 struct SceneDescription {
   std::string task;
@@ -91,6 +109,8 @@ struct SceneDescription {
   double floor_height = 0.0;      // [m], z of the background sheet
   int n_tools = 0;
   std::array<ToolShape, 3> tools;
+  int n_pellets = 0;
+  std::array<PelletShape, kMaxPellets> pellets;
   int capacity = 0;               // nodes
 };
 

@@ -48,6 +48,12 @@ void observe_tools(const State& s, Observation& o) noexcept {
   }
 }
 
+void observe_pellets(const State& s, Observation& o) noexcept {
+  o.n_pellets = static_cast<int>(s.pellets.size());
+  for (std::size_t k = 0; k < s.pellets.size(); ++k)
+    o.pellets[k] = {s.pellets[k].p, s.pellets[k].holder, s.pellets[k].broken != 0};
+}
+
 }  // namespace
 
 void size_observation(const Model& model, Observation& o) {
@@ -64,6 +70,7 @@ void fill_observation(const Model& model, const State& s, const ImplicitRod& rod
   o.time = static_cast<double>(s.step) * model.step.dt;
   observe_thread(model, s, rod, o);
   observe_tools(s, o);
+  observe_pellets(s, o);
   o.broken = s.break_arc >= 0.0;
   o.break_edge = edge_at(s.thread, s.break_arc);
   o.cut_edge_low = edge_at(s.thread, s.cut_low);

@@ -94,6 +94,25 @@ void read_instruments(const std::string& root, const YamlNode& scene, Model& m) 
   m.description.n_tools = static_cast<int>(m.instruments.size());
 }
 
+void read_pellets(const YamlNode& scene, Model& m) {
+  for (const YamlNode& item : scene.items_or_none("objects")) {
+    if (m.pellets.size() == m.description.pellets.size()) item.refuse("name", "at most eight objects");
+    PelletParameters p;
+    p.name = item.text("name");
+    p.start = item.vec3("p", "mm");
+    p.radius = item.quantity("radius", "mm", Range::positive());
+    p.mass = item.quantity("mass", "mg", Range::positive());
+    p.stiffness = item.quantity("stiffness", "N/m", Range::positive());
+    p.friction = item.number("friction", {0.0, 2.0, true});
+    p.adhesion = item.quantity("adhesion", "mN", Range::not_negative());
+    p.strength = item.quantity("strength", "mN", Range::positive());
+    item.text("source");
+    m.description.pellets[m.pellets.size()] = {p.name, p.radius, p.slip_limit(), p.strength};
+    m.pellets.push_back(p);
+  }
+  m.description.n_pellets = static_cast<int>(m.pellets.size());
+}
+
 }  // namespace
 
 RodMaterial load_suture(const std::string& path, ContactMaterial& contact) {
@@ -172,6 +191,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
   m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));
   read_instruments(root, scene, *m);
+  read_pellets(scene, *m);
   m->step.max_iterations = scene.integer("newton_iterations", 1, 100);
   m->step.longest_move = 0.5 * m->resolution.longest;
   d.dt = m->step.dt = scene.quantity("step", "ms", {1e-4, 5e-3});

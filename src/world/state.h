@@ -7,6 +7,7 @@
 
 #include "physics/implicit_rod.h"
 #include "physics/instrument.h"
+#include "physics/pellet.h"
 
 namespace filum {
 
@@ -18,6 +19,7 @@ struct State {
   std::vector<Vec3> force, torque;          // [N], [N m], of the scene on each tool in the last step, about its tip
   std::array<std::int32_t, 3> armed{};      // jaws have been open since they last closed: they may take the thread
   std::array<std::int32_t, 3> valid{};      // the device was live in the last step
+  std::vector<PelletState> pellets;
   double overloaded = 0.0;                  // [N], highest tension since the last overload event, 0 when below
   double cut_low = -1.0, cut_high = -1.0;   // [m], arc of the cuts below and above the post, -1 none
   double break_arc = -1.0;                  // [m], where the thread parted under tension, -1 none

@@ -57,6 +57,16 @@ std::uint64_t hash_wrenches(const State& s) noexcept {
   return h;
 }
 
+/// Scenes without objects keep the hash of their instruments.
+std::uint64_t hash_pellets(const State& s, std::uint64_t h) noexcept {
+  for (const PelletState& p : s.pellets) {
+    for (const Vec3* v : {&p.p, &p.v, &p.anchor_T}) h = hash_bytes(v->data(), 3 * sizeof(double), h);
+    const std::array<std::int32_t, 4> row = {p.holder, p.stuck, p.broken, p.escaped};
+    h = hash_bytes(row.data(), sizeof(row), h);
+  }
+  return h;
+}
+
 std::uint64_t hash_flags(const State& s) noexcept {
   const std::array<double, 5> row = {s.thread.arc_start, s.overloaded, s.cut_low, s.cut_high, s.break_arc};
   std::uint64_t h = hash_bytes(row.data(), sizeof(row), s.step);
@@ -84,7 +94,7 @@ std::array<std::uint64_t, kArrays> hashes(const State& s) noexcept {
           hash_grasps(s.memory.grasps),
           hash_bristles(s.memory.self),
           hash_bristles(s.memory.obstacle),
-          hash_wrenches(s) ^ hash_instruments(s),
+          hash_pellets(s, hash_wrenches(s) ^ hash_instruments(s)),
           hash_flags(s)};
 }
 

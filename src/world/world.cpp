@@ -24,6 +24,7 @@ struct World::Impl {
   State state;
   ImplicitRod rod;
   Instruments instruments;
+  Pellets pellets;
   std::vector<InstrumentCommand> commands;
   RodStepSummary solver;
   Observation observation;
@@ -35,6 +36,7 @@ struct World::Impl {
   void take_or_cut(int tool) noexcept;
   void ignore_held_thread() noexcept;
   void step_thread() noexcept;
+  void step_pellets() noexcept;
   void part_overloaded_thread() noexcept;
   void observe() noexcept;
 
@@ -55,7 +57,8 @@ struct World::Impl {
 World::Impl::Impl(std::shared_ptr<const Model> m)
     : model(std::move(m)),
       rod(model->thread, model->contact, model->description.capacity, model->description.n_tools),
-      instruments(model->instruments) {
+      instruments(model->instruments),
+      pellets(model->pellets, model->description.floor_height) {
   const auto n_tools = model->instruments.size();
   state.thread = RodState::from_nodes(model->thread_path, model->description.capacity);
   state.memory = rod.make_memory();
@@ -74,6 +77,7 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
       rod.obstacles.obstacles.push_back(bar);
     }
   }
+  state.pellets = pellets.start();
   state.force.assign(n_tools, Vec3::Zero());
   state.torque.assign(n_tools, Vec3::Zero());
   add_fixtures(*model, rod.obstacles);
@@ -91,6 +95,7 @@ void World::step(const Inputs& inputs) noexcept {
   impl_->move_instruments();
   impl_->open_and_close_jaws();
   impl_->step_thread();
+  impl_->step_pellets();
   impl_->part_overloaded_thread();
   adapt_resolution(impl_->model->resolution, impl_->model->description.capacity,
                    impl_->model->thread.radius, impl_->rod.contact(), impl_->rod.obstacles,
@@ -116,6 +121,7 @@ void World::Impl::read_inputs(const Inputs& inputs) noexcept {
 
 void World::Impl::move_instruments() noexcept {
   for (std::size_t i = 0; i < commands.size(); ++i) rod.obstacles.bodies[i].X_start = state.instruments[i].X_WT;
+  if (!pellets.empty()) pellets.limit_jaws(model->instruments, state.instruments, state.pellets, commands);
   instruments.step(state.instruments, commands, state.force, state.torque, model->step.dt);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     ObstacleBody& body = rod.obstacles.bodies[i];
@@ -197,6 +203,17 @@ void World::Impl::step_thread() noexcept {
     state.torque[i] = rod.obstacles.bodies[i].torque + rod.grasps.tools[i].torque;
     if (before[i] > 0 && held_by(static_cast<int>(i)) == 0)
       event("drop", static_cast<int>(i), state.instruments[i].grip_force, "N");
+  }
+}
+
+void World::Impl::step_pellets() noexcept {
+  if (pellets.empty()) return;
+  std::array<PelletEvent, 8> events;
+  const int n = pellets.step(model->instruments, state.instruments, model->step.dt, state.pellets, state.force, events.data(),
+                             static_cast<int>(events.size()));
+  for (int k = 0; k < n; ++k) {
+    const PelletEvent& e = events[static_cast<std::size_t>(k)];
+    event(e.name, e.tool, e.value, "N");
   }
 }
 

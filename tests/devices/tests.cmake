@@ -1,4 +1,4 @@
-foreach(name clock_sync demonstrator forceps_calibration forceps_stream frame_reader monotone_cubic pointer_device pose_script
+foreach(name clock_sync demonstrator forceps_calibration forceps_stream frame_reader hand_tremor monotone_cubic pointer_device pose_script
              pose_track replay_device sample_check serial_forceps)
   filum_test(devices/${name})
 endforeach()
