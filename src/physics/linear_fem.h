@@ -15,6 +15,9 @@
 // (a linear element that turns pushes back), nu < 0.5. Plain linear tetrahedra lock: nu = 0.45 bends 39 % too stiffly with
 // 4 elements through the thickness; `averaged_pressure` takes the volume change averaged over the elements about each node
 // (Bonet & Burton, Commun. Numer. Meth. Eng. 14:437, 1998), which cures it at five times the matrix.
+// Relaxation at a fixed exposure: a share g of the stiffness is a spring in series with a dashpot, so that the elastic force is
+// K (u - g w), w' = (u - w)/tau, which is exact for a linear solid held still: force = K u (1 - g (1 - exp(-t/tau))). Hongo
+// et al. measured that the pressure halves in 6.6 minutes; w stays for a while, so a second retraction relaxes less.
 // Elements can be taken out between steps; nothing is precomputed that this would spoil. Test: linear_fem_test.
 
 #include <memory>
@@ -40,6 +43,8 @@ struct FemOptions {
   double dt = 2e-3;                // [s]
   double mass_damping = 0.0;       // a [1/s]
   double stiffness_damping = 0.0;  // b [s]
+  double relaxing_share = 0.0;     // g [-], 0 to 1; 0: none
+  double relaxation_time = 360.0;  // tau [s]
   bool averaged_pressure = false;
   bool single_precision = false;   // of the matrix a step reads; sums stay in double
   FemSolverOptions solver;
@@ -47,6 +52,7 @@ struct FemOptions {
 
 struct FemState {
   Points u, v, a;               // [m], [m/s], [m/s2], 3 x n
+  Points w;                     // [m], 3 x n, relaxed displacement; 3 x 0 where nothing relaxes
   std::vector<char> removed;    // of each element
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 // The constant part of a scene: materials, instruments, post, first shape of the thread. Immutable after load.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "world/observation.h"
 
 namespace filum {
+
+struct BrainModel;  // world/brain_model.h
 
 struct Model {
   SceneDescription description;
@@ -25,6 +28,7 @@ struct Model {
   std::vector<InstrumentParameters> instruments;
   std::vector<Pose> instrument_start;
   std::vector<PelletParameters> pellets;  // small objects to be picked up; most scenes have none
+  std::shared_ptr<const BrainModel> brain;  // instead of the thread, in scenes of brain retraction
   std::vector<std::string> sources;  // files it was read from, relative to the root
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/pose.h"
+#include "world/brain_observation.h"
 
 namespace filum {
 
@@ -57,6 +58,7 @@ struct Observation {
   std::array<ToolObservation, 3> tools;
   int n_pellets = 0;
   std::array<PelletObservation, kMaxPellets> pellets;
+  BrainObservation brain;
   int n_contacts = 0;             // self-contacts
   double min_gap = 0.0;           // [m], smallest surface distance between strands (negative: compressed)
   int newton_iterations = 0;
@@ -111,6 +113,7 @@ struct SceneDescription {
   std::array<ToolShape, 3> tools;
   int n_pellets = 0;
   std::array<PelletShape, kMaxPellets> pellets;
+  BrainDescription brain;
   int capacity = 0;               // nodes
 };
 

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/yaml_file.h"
+#include "world/brain_file.h"
 #include "world/world.h"
 
 namespace filum {
@@ -167,6 +168,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   const std::string path = root + "/curricula/" + task + "/scene.yaml";
   if (!std::filesystem::exists(path))
     throw InputError("command line", "task", task, "the name of a task with a scene (see `filum list`)");
+  if (YamlNode::load(path).text("format") == kBrainScene) return load_brain_scene(root, task, model_file);
   auto m = std::make_shared<Model>();
   const YamlNode scene = open(path, "filum-scene/1");
   m->sources.push_back("curricula/" + task + "/scene.yaml");

@@ -7,6 +7,7 @@
 
 #include "physics/implicit_rod.h"
 #include "physics/instrument.h"
+#include "world/brain_model.h"
 #include "physics/pellet.h"
 
 namespace filum {
@@ -22,6 +23,7 @@ struct State {
   std::vector<PelletState> pellets;
   double overloaded = 0.0;                  // [N], highest tension since the last overload event, 0 when below
   double cut_low = -1.0, cut_high = -1.0;   // [m], arc of the cuts below and above the post, -1 none
+  BrainState brain;                         // empty in scenes without one
   double break_arc = -1.0;                  // [m], where the thread parted under tension, -1 none
 };
 

@@ -1,8 +1,10 @@
 #include "world/state_hash.h"
 
+#include <algorithm>
 #include <array>
 
 #include "base/hash.h"
+#include "world/brain_scene.h"
 
 namespace filum {
 namespace {
@@ -81,16 +83,17 @@ constexpr std::array<const char*, kArrays> kNames = {
 
 std::array<std::uint64_t, kArrays> hashes(const State& s) noexcept {
   const RodState& r = s.thread;
+  const int edges = std::max(0, r.n - 1);
   return {hash_columns(r.x, r.n),
           hash_columns(r.v, r.n),
           hash_values(r.theta, r.n),
           hash_values(r.theta_dot, r.n),
-          hash_columns(r.d1, r.n - 1),
+          hash_columns(r.d1, edges),
           hash_values(r.ref_twist, r.n),
-          hash_values(r.rest_length, r.n - 1),
+          hash_values(r.rest_length, edges),
           hash_columns(r.rest_kappa, r.n),
           hash_values(r.rest_twist, r.n),
-          hash_bytes(r.alive.data(), sizeof(int) * static_cast<std::size_t>(r.n - 1)),
+          hash_bytes(r.alive.data(), sizeof(int) * static_cast<std::size_t>(edges)),
           hash_grasps(s.memory.grasps),
           hash_bristles(s.memory.self),
           hash_bristles(s.memory.obstacle),
@@ -102,13 +105,18 @@ std::array<std::uint64_t, kArrays> hashes(const State& s) noexcept {
 
 std::uint64_t hash_state(const State& s) noexcept {
   const auto all = hashes(s);
-  return hash_bytes(all.data(), sizeof(all));
+  std::uint64_t h = hash_bytes(all.data(), sizeof(all));
+  if (s.brain.blades.empty()) return h;
+  for (const auto& [name, hash] : brain_hashes(s.brain)) h = hash_bytes(&hash, sizeof hash, h);
+  return h;
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> array_hashes(const State& s) {
   const auto all = hashes(s);
   std::vector<std::pair<std::string, std::uint64_t>> named;
   for (std::size_t k = 0; k < kArrays; ++k) named.emplace_back(kNames[k], all[k]);
+  if (!s.brain.blades.empty())
+    for (const auto& [name, hash] : brain_hashes(s.brain)) named.emplace_back(name, hash);
   return named;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/brain_scene.h"
 #include "world/fixtures.h"
 #include "world/model.h"
 #include "world/observe.h"
@@ -27,6 +28,7 @@ struct World::Impl {
   Pellets pellets;
   std::vector<InstrumentCommand> commands;
   RodStepSummary solver;
+  std::unique_ptr<BrainScene> brain;  // in scenes of brain retraction: then it takes the whole step
   Observation observation;
 
   explicit Impl(std::shared_ptr<const Model> m);
@@ -38,6 +40,8 @@ struct World::Impl {
   void step_thread() noexcept;
   void step_pellets() noexcept;
   void part_overloaded_thread() noexcept;
+  void start_brain();
+  void step_brain(const Inputs& inputs) noexcept;
   void observe() noexcept;
 
   double tip_gap(int tool) const noexcept {
@@ -59,6 +63,10 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
       rod(model->thread, model->contact, model->description.capacity, model->description.n_tools),
       instruments(model->instruments),
       pellets(model->pellets, model->description.floor_height) {
+  if (model->brain) {
+    start_brain();
+    return;
+  }
   const auto n_tools = model->instruments.size();
   state.thread = RodState::from_nodes(model->thread_path, model->description.capacity);
   state.memory = rod.make_memory();
@@ -89,8 +97,26 @@ World::World(std::shared_ptr<const Model> model) : impl_(std::make_unique<Impl>(
 World::~World() = default;
 World::World(World&&) noexcept = default;
 
+void World::Impl::start_brain() {
+  brain = std::make_unique<BrainScene>(model->brain);
+  state.brain = brain->start();
+  size_observation(*model, observation);
+  brain->size_observation(observation);
+  observe();
+}
+
+void World::Impl::step_brain(const Inputs& inputs) noexcept {
+  brain->step(inputs, state.brain, state.valid, observation);
+  ++state.step;
+  observe();
+}
+
 void World::step(const Inputs& inputs) noexcept {
   impl_->observation.n_events = 0;
+  if (impl_->brain) {
+    impl_->step_brain(inputs);
+    return;
+  }
   impl_->read_inputs(inputs);
   impl_->move_instruments();
   impl_->open_and_close_jaws();
@@ -243,6 +269,7 @@ void World::Impl::part_overloaded_thread() noexcept {
 
 void World::Impl::observe() noexcept {
   fill_observation(*model, state, rod, solver, observation);
+  if (brain) brain->observe(state.brain, state.valid, observation);
   observation.state_hash = hash_state(state);
 }
 
@@ -253,6 +280,7 @@ const State& World::state() const noexcept { return impl_->state; }
 
 void World::restore(const State& state) {
   impl_->state = state;
+  if (impl_->brain) impl_->brain->match(state.brain);
   impl_->observation.n_events = 0;
   impl_->observe();
 }

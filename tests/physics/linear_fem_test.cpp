@@ -299,6 +299,33 @@ TEST(LinearFem, SinglePrecisionMatrixGivesTheSameStepToAMillionth) {
   EXPECT_LT((narrow.u - wide.u).norm(), 1e-6 * wide.u.norm());
 }
 
+TEST(LinearFem, ForceOfAFixedExposureRelaxesByItsShareAndTime) {
+  FemOptions options;
+  options.dt = 0.05;
+  options.mass_damping = 20.0;
+  options.stiffness_damping = 0.05;
+  options.relaxing_share = 0.75;
+  options.relaxation_time = 2.0;
+  TetMesh mesh = irregular_block(3);
+  mesh.nodes *= 0.03;
+  LinearFem fem(mesh, {{}}, options);
+  fem.hold(nodes_where(mesh, [](const Vec3& x) { return x.z() < 1e-9; }));
+  std::vector<MovedNode> moved;
+  for (const int i : nodes_where(mesh, [](const Vec3& x) { return x.z() > 0.03 - 1e-9; })) moved.push_back({i, true, Vec3(0, 0, -2e-3)});
+  FemState rest = fem.rest(), s = rest;
+  const auto press = [&] {
+    double sum = 0.0;
+    for (const MovedNode& m : moved) sum -= m.force.z();
+    return sum;
+  };
+  fem.equilibrium(rest, moved);
+  const double at_once = press();
+  for (int k = 0; k < 40; ++k) fem.step(s, moved);
+  EXPECT_NEAR(press() / at_once, 1.0 - 0.75 * (1.0 - std::exp(-1.0)), 0.02);
+  for (int k = 0; k < 400; ++k) fem.step(s, moved);
+  EXPECT_NEAR(press() / at_once, 0.25, 0.01);
+}
+
 TEST(LinearFem, NumbersThatAreNotFiniteAreReportedAndNotKept) {
   TetMesh mesh = irregular_block(2);
   LinearFem fem(mesh, {{}}, {});

@@ -1,0 +1,179 @@
+#include "world/brain_file.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/yaml_file.h"
+#include "world/brain_scene.h"
+
+namespace filum {
+namespace {
+
+YamlNode open(const std::string& path, const std::string& format) {
+  YamlNode file = YamlNode::load(path);
+  if (file.text("format") != format) file.refuse("format", format);
+  return file;
+}
+
+/// { value, uncertainty, source }: no number stands alone.
+double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
+  const YamlNode field = file.map(key);
+  field.text("source");
+  field.quantity("uncertainty", unit, Range::not_negative());
+  return field.quantity("value", unit, range);
+}
+
+Pose read_pose(const YamlNode& node) {
+  Pose X;
+  X.p = node.vec3("p", "mm");
+  const Vec3 z = node.vec3("handle", "-"), x = node.vec3("opening", "-");
+  if (z.norm() < 1e-6) node.refuse("handle", "a direction");
+  if (z.cross(x).norm() < 1e-6) node.refuse("opening", "a direction across the blade, not along it");
+  const Vec3 zu = z.normalized(), xu = (x - x.dot(zu) * zu).normalized();
+  Mat3 r;
+  r << xu, zu.cross(xu), zu;
+  X.q = Quat(r);
+  return X;
+}
+
+CortexShape read_shape(const YamlNode& node) {
+  CortexShape s;
+  s.size = node.vec3("size", "mm");
+  const YamlNode cells = node.map("cells");
+  s.cells = {cells.integer("along", 2, 100), cells.integer("across", 2, 100), cells.integer("deep", 2, 100)};
+  s.gyrus = node.quantity("gyrus", "mm", Range::positive());
+  s.sulcus = node.quantity("sulcus", "mm", Range::not_negative());
+  s.grey = node.quantity("grey", "mm", Range::not_negative());
+  s.fissure_depth = node.quantity_or("fissure_depth", "mm", 0.0, Range::not_negative());
+  s.fissure_gap = node.quantity_or("fissure_gap", "mm", 1e-3, Range::positive());
+  s.fissure_wave = node.quantity_or("fissure_wave", "mm", 0.0, Range::not_negative());
+  return s;
+}
+
+FemMaterial read_tissue(const YamlNode& node) {
+  FemMaterial m;
+  m.young = measured(node, "young", "kPa", Range::positive());
+  m.poisson = measured(node, "poisson", "-", {-0.99, 0.4999, false});
+  m.density = measured(node, "density", "kg/m3", Range::positive());
+  return m;
+}
+
+void read_veins(const YamlNode& file, BrainModel& m) {
+  for (const YamlNode& item : file.items_or_none("veins")) {
+    BridgingVein v;
+    const Vec3 at = item.vec3("cortex", "mm");
+    v.dura_W = item.vec3("dura", "mm");
+    double nearest = 1.0;
+    for (const int i : m.cortex.surface_nodes) {
+      const double d = (m.cortex.mesh.nodes.col(i) - at).norm();
+      const bool held = std::binary_search(m.cortex.held.begin(), m.cortex.held.end(), i);
+      if (held || d >= nearest) continue;
+      nearest = d;
+      v.node = i;
+    }
+    v.slack = (v.dura_W - Vec3(m.cortex.mesh.nodes.col(v.node))).norm() * item.number("slack", Range::between(1.0, 3.0));
+    v.stiffness = item.quantity("stiffness", "N/m", Range::positive());
+    v.strength = item.quantity("strength", "N", Range::positive());
+    item.text("source");
+    const bool twice = std::any_of(m.veins.begin(), m.veins.end(), [&](const BridgingVein& o) { return o.node == v.node; });
+    if (twice) item.refuse("cortex", "a place of its own");
+    m.veins.push_back(v);
+  }
+}
+
+void read_brain(const std::string& path, BrainModel& m) {
+  const YamlNode file = open(path, "filum-brain/1");
+  m.name = file.text("title");
+  if (file.has("mesh")) {
+    const std::string mesh = (std::filesystem::path(path).parent_path() / file.text("mesh")).string();
+    m.cortex = cortex_from_mesh(load_mesh(mesh), file.quantity("held_below", "mm"));
+  } else {
+    m.cortex = make_cortex(read_shape(file.map("shape")), path);
+  }
+  const double dial = file.number_or("stiffness_dial", 1.0, Range::between(0.1, 10.0));
+  m.regions = {read_tissue(file.map("grey")), read_tissue(file.map("white"))};
+  for (FemMaterial& tissue : m.regions) tissue.young *= dial;
+  m.fem.mass_damping = measured(file, "mass_damping", "1/s", Range::not_negative());
+  m.fem.stiffness_damping = measured(file, "stiffness_damping", "ms", Range::not_negative());
+  m.fem.relaxing_share = measured(file, "relaxing_share", "-", Range::between(0.0, 0.99));
+  m.fem.relaxation_time = measured(file, "relaxation_time", "s", Range::positive());
+  m.contact.friction = measured(file, "friction", "-", Range::between(0.0, 2.0));
+  m.contact.reach = file.quantity("reach", "mm", Range::positive());
+  read_veins(file, m);
+  file.finish();
+}
+
+void read_blades(const std::string& root, const YamlNode& scene, Model& m, BrainModel& brain) {
+  for (const YamlNode& item : scene.items("blades")) {
+    if (brain.blades.size() == 2) item.refuse("model", "at most two blades");
+    const std::string file = "models/spatula/" + item.text("model") + ".yaml";
+    m.sources.push_back(file);
+    BladeShape shape = load_blade(root + "/" + file);
+    shape.name = item.text_or("name", shape.name);
+    ToolShape& tool = m.description.tools[brain.blades.size()];
+    tool.name = shape.name;
+    tool.kind = "spatula";
+    tool.jaw_length = shape.length;
+    tool.tip_radius = 0.5 * shape.tip_width;
+    tool.base_radius = 0.5 * shape.width;
+    brain.blades.push_back(shape);
+    brain.blade_start.push_back(read_pose(item));
+  }
+  if (brain.blades.empty()) scene.refuse("blades", "one or two blades");
+  m.description.n_tools = static_cast<int>(brain.blades.size());
+}
+
+}  // namespace
+
+BladeShape load_blade(const std::string& path) {
+  const YamlNode file = open(path, "filum-spatula/1");
+  BladeShape b;
+  b.name = file.text("title");
+  b.width = file.quantity("width", "mm", Range::positive());
+  b.tip_width = file.quantity("tip_width", "mm", Range::positive());
+  b.taper = file.quantity("taper", "mm", Range::not_negative());
+  b.length = file.quantity("length", "mm", Range::positive());
+  b.grip = file.quantity("grip", "mm", Range::positive());
+  for (const YamlNode& bend : file.items_or_none("bends"))
+    b.bends.push_back({bend.quantity("at", "mm"), bend.quantity("angle", "deg"), bend.quantity("over", "mm", Range::positive())});
+  file.text("source");
+  file.finish();
+  check_blade(b, path);
+  return b;
+}
+
+std::shared_ptr<const Model> load_brain_scene(const std::string& root, const std::string& task, const std::string& model_file) {
+  const std::string scene_file = "curricula/" + task + "/scene.yaml";
+  const YamlNode scene = open(root + "/" + scene_file, kBrainScene);
+  auto m = std::make_shared<Model>();
+  auto brain = std::make_shared<BrainModel>();
+  m->sources.push_back(scene_file);
+  SceneDescription& d = m->description;
+  d.task = task;
+  d.title = scene.text("title");
+  const std::string named = "models/brain/" + scene.text("brain") + ".yaml";
+  d.suture = "none";
+  m->sources.push_back(model_file.empty() ? named : model_file);
+  read_brain(model_file.empty() ? root + "/" + named : model_file, *brain);
+  if (!scene.flag_or("relaxation", true)) brain->fem.relaxing_share = 0.0;
+  brain->time_compression = scene.number_or("time_compression", 1.0, Range::between(1.0, 60.0));
+  if (scene.has("target")) {
+    const YamlNode target = scene.map("target");
+    brain->target_W = target.vec3("p", "mm");
+    brain->target_radius = target.quantity("radius", "mm", Range::positive());
+  }
+  read_blades(root, scene, *m, *brain);
+  d.dt = m->step.dt = brain->fem.dt = scene.quantity("step", "ms", {5e-4, 2e-2});
+  brain->fem.single_precision = true;
+  brain->fem.solver.relative = scene.number_or("residual", 1e-3, Range::between(1e-12, 1e-2));
+  brain->fem.solver.max_iterations = scene.integer_or("iterations", 60, 1, 10000);
+  scene.finish();
+  d.capacity = 8;  // of the thread that is not there
+  d.floor_height = -0.1;
+  describe_brain(*brain, d.brain);
+  m->brain = std::move(brain);
+  return m;
+}
+
+}  // namespace filum

@@ -1,0 +1,325 @@
+#include "world/brain_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/hash.h"
+
+namespace filum {
+namespace {
+
+constexpr double kTip = 5e-3;      // [m] from the tip's edge that count as the tip
+constexpr double kTurnRate = 3.0;  // [rad/s], of a blade at most
+constexpr double kMargin = 1e-3;   // [m], that tissue may move in a step
+constexpr int kSights = 19;        // lines of sight to the target
+constexpr int kLookEvery = 10;     // steps between two looks at the target
+
+void event(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
+  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
+}
+
+/// The pose on the way from a to b that is no further than the limits allow.
+Pose towards(const Pose& a, const Pose& b, double far, double turn) noexcept {
+  Pose X;
+  const Vec3 step = b.p - a.p;
+  const double length = step.norm(), angle = a.q.angularDistance(b.q);
+  X.p = length > far ? Vec3(a.p + step * (far / length)) : b.p;
+  X.q = angle > turn ? a.q.slerp(turn / angle, b.q) : b.q;
+  X.q.normalize();
+  return X;
+}
+
+/// Points spread evenly over the unit disc (sunflower).
+Vec3 sight(int k) noexcept {
+  const double r = std::sqrt((k + 0.5) / kSights), a = k * std::numbers::pi * (3.0 - std::sqrt(5.0));
+  return {r * std::cos(a), r * std::sin(a), 0.0};
+}
+
+/// Does the vertical line through p pass through the triangle above p?
+bool covers(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) noexcept {
+  const auto cross = [](const Vec3& u, const Vec3& v, const Vec3& w) { return (v.x() - u.x()) * (w.y() - u.y()) - (v.y() - u.y()) * (w.x() - u.x()); };
+  const double whole = cross(a, b, c), wa = cross(p, b, c), wb = cross(a, p, c), wc = cross(a, b, p);
+  if (whole == 0.0 || wa * whole < 0.0 || wb * whole < 0.0 || wc * whole < 0.0) return false;
+  return (wa * a.z() + wb * b.z() + wc * c.z()) / whole > p.z() + 1e-6;
+}
+
+RigidSurface surface_of(const BladeShape& shape) {
+  constexpr double kCell = 2.5e-3;  // [m]
+  return blade_surface(shape, std::max(4, static_cast<int>(shape.length / kCell)), std::max(2, static_cast<int>(shape.width / kCell)));
+}
+
+FemOptions compressed(FemOptions o, double factor) {
+  o.relaxation_time /= factor;
+  return o;
+}
+
+}  // namespace
+
+BrainScene::BrainScene(std::shared_ptr<const BrainModel> model)
+    : model_(std::move(model)),
+      fem_(model_->cortex.mesh, model_->regions, compressed(model_->fem, model_->time_compression), model_->name),
+      contact_(model_->contact),
+      tree_(model_->cortex.surface, model_->cortex.mesh.nodes) {
+  fem_.hold(model_->cortex.held);
+  const auto n = static_cast<std::size_t>(model_->cortex.mesh.n_nodes());
+  vertex_of_.assign(n, -1);
+  marked_.assign(n, 0);
+  for (std::size_t k = 0; k < model_->cortex.surface_nodes.size(); ++k) vertex_of_[static_cast<std::size_t>(model_->cortex.surface_nodes[k])] = static_cast<int>(k);
+  area_.assign(model_->cortex.surface_nodes.size(), 0.0);
+  hits_.reserve(model_->cortex.surface.size());
+  candidates_.reserve(n);
+  contact_.reserve(n);
+  for (const BladeShape& shape : model_->blades) surfaces_.push_back(surface_of(shape));
+  blades_.resize(surfaces_.size());
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    blades_[i].surface = &surfaces_[i];
+    blades_[i].X_now = blades_[i].X_before = model_->blade_start[i];
+  }
+  positions_ = model_->cortex.mesh.nodes;
+  loads_ = Points::Zero(3, model_->cortex.mesh.n_nodes());
+}
+
+BrainState BrainScene::start() const {
+  BrainState s;
+  s.fem = fem_.rest();
+  s.seen = s.fem.u;
+  s.contacts.reserve(model_->cortex.surface_nodes.size());
+  for (const Pose& X : model_->blade_start) {
+    s.blades.emplace_back();
+    s.blades.back().X_W = s.blades.back().X_WD = X;
+  }
+  s.torn.assign(model_->veins.size(), 0);
+  return s;
+}
+
+void BrainScene::step(const Inputs& inputs, BrainState& s, std::array<std::int32_t, 3>& valid, Observation& o) noexcept {
+  move_blades(inputs, s, valid, o);
+  find_candidates(s);
+  contact_.update(fem_, s.fem.u, s.seen, blades_, candidates_, s.contacts);
+  pull_veins(s, o);
+  s.seen = s.fem.u;
+  summary_ = fem_.step(s.fem, contact_.moved(), &loads_);
+  if (!summary_.sound) event(o, "solver-trouble", -1, summary_.residual, "N");
+  contact_.read(fem_, s.fem.u, blades_, s.contacts);
+  report(s, o);
+  if (o.step % kLookEvery == 0) s.exposed = exposed_share(s);
+}
+
+void BrainScene::move_blades(const Inputs& inputs, BrainState& s, std::array<std::int32_t, 3>& valid, Observation& o) noexcept {
+  const double dt = fem_.options().dt;
+  for (std::size_t i = 0; i < blades_.size(); ++i) {
+    const ToolInput& in = inputs.tools[i];
+    BladeState& blade = s.blades[i];
+    const bool sound = in.valid && in.X_WD.finite() && std::abs(in.X_WD.q.norm() - 1.0) < 1e-3;
+    if (sound != (valid[i] != 0)) event(o, sound ? "input-back" : "input-lost", static_cast<int>(i), 0.0, "-");
+    valid[i] = sound;
+    blades_[i].X_before = blade.X_W;
+    if (sound) {
+      const std::int32_t parked = (in.buttons & 1u) != 0 ? 1 : 0;
+      if (parked != blade.parked) event(o, parked != 0 ? "arm-locked" : "arm-freed", static_cast<int>(i), 0.0, "-");
+      blade.parked = parked;
+      blade.X_WD = in.X_WD;
+      blade.X_WD.q.normalize();
+      if (blade.parked == 0) blade.X_W = towards(blade.X_W, blade.X_WD, model_->fastest * dt, kTurnRate * dt);
+    }
+    blades_[i].X_now = blade.X_W;
+  }
+}
+
+/// Nodes of the triangles near the space each blade swept.
+void BrainScene::find_candidates(const BrainState& s) noexcept {
+  positions_ = model_->cortex.mesh.nodes + s.fem.u;
+  tree_.refit(positions_);
+  candidates_.clear();
+  const double reach = model_->contact.reach + kMargin;
+  for (const MovingBlade& b : blades_) {
+    Box box{b.X_now.p, b.X_now.p};
+    for (int k = 0; k < b.surface->vertices.cols(); ++k)
+      for (const Pose* X : {&b.X_before, &b.X_now}) {
+        const Vec3 x = *X * Vec3(b.surface->vertices.col(k));
+        box.low = box.low.cwiseMin(x);
+        box.high = box.high.cwiseMax(x);
+      }
+    box.low.array() -= reach;
+    box.high.array() += reach;
+    hits_.clear();
+    tree_.overlaps(box, hits_);
+    for (const int t : hits_)
+      for (const int i : tree_.triangles()[static_cast<std::size_t>(t)])
+        if (!marked_[static_cast<std::size_t>(i)]) {
+          marked_[static_cast<std::size_t>(i)] = 1;
+          candidates_.push_back(i);
+        }
+  }
+  for (const int i : candidates_) marked_[static_cast<std::size_t>(i)] = 0;
+}
+
+void BrainScene::pull_veins(BrainState& s, Observation& o) noexcept {
+  for (std::size_t k = 0; k < model_->veins.size(); ++k) {
+    const BridgingVein& v = model_->veins[k];
+    loads_.col(v.node).setZero();
+    if (s.torn[k] != 0) continue;
+    const Vec3 span = v.dura_W - place(s, v.node);
+    const double length = span.norm(), force = v.stiffness * std::max(0.0, length - v.slack);
+    if (force > v.strength) {
+      s.torn[k] = 1;
+      event(o, "vein-torn", -1, force, "N");
+    } else if (force > 0.0) {
+      loads_.col(v.node) = span * (force / length);
+    }
+  }
+}
+
+/// Slips, cuts by the edge, and forces beyond what a device is given.
+void BrainScene::report(BrainState& s, Observation& o) noexcept {
+  measure(s, o);
+  for (std::size_t i = 0; i < blades_.size(); ++i) {
+    BladeState& blade = s.blades[i];
+    double sliding = 0.0, edge = 0.0;
+    for (const BladeContact& c : s.contacts) {
+      if (c.blade != static_cast<std::int32_t>(i)) continue;
+      const Vec3 q = blades_[i].X_now.inverse() * place(s, c.node);
+      const Vec3 moved = blades_[i].X_now * q - blades_[i].X_before * q - fem_.options().dt * s.fem.v.col(c.node);
+      const Vec3 n = blades_[i].X_now.q * surfaces_[i].normals[static_cast<std::size_t>(c.triangle)];
+      if (c.slipping != 0 && c.share == 1.0) sliding = std::max(sliding, (moved - moved.dot(n) * n).norm());
+      if (c.share < 1.0) edge = std::max(edge, o.brain.pressure[static_cast<std::size_t>(vertex_of_[static_cast<std::size_t>(c.node)])]);
+    }
+    blade.slid = sliding > 0.0 ? blade.slid + sliding : 0.0;
+    if (blade.slid > model_->slip_distance) {
+      event(o, "slip", static_cast<int>(i), blade.slid, "m");
+      blade.slid = 0.0;
+    }
+    if (edge > model_->edge_pressure && blade.cutting == 0) event(o, "edge-cut", static_cast<int>(i), edge, "Pa");
+    blade.cutting = edge > (blade.cutting != 0 ? 0.8 : 1.0) * model_->edge_pressure ? 1 : 0;
+    const double force = blades_[i].force.norm(), share = force > model_->strongest ? model_->strongest / force : 1.0;
+    if (share < 1.0 && blade.force.norm() < 0.999 * model_->strongest) event(o, "force-limit", static_cast<int>(i), force, "N");
+    blade.force = share * blades_[i].force;
+    blade.torque = share * blades_[i].torque;
+  }
+}
+
+void BrainScene::measure(const BrainState& s, Observation& o) noexcept {
+  BrainObservation& b = o.brain;
+  std::fill(area_.begin(), area_.end(), 0.0);
+  for (const Triangle& t : model_->cortex.surface) {
+    const Vec3 p = place(s, t[0]);
+    const double third = (place(s, t[1]) - p).cross(place(s, t[2]) - p).norm() / 6.0;
+    for (const int i : t) area_[static_cast<std::size_t>(vertex_of_[static_cast<std::size_t>(i)])] += third;
+  }
+  std::fill(b.pressure.begin(), b.pressure.end(), 0.0);
+  for (std::size_t i = 0; i < blades_.size(); ++i) b.blades[i] = BladeObservation{};
+  std::array<double, 2> total{};
+  for (const BladeContact& c : s.contacts) {
+    const auto v = static_cast<std::size_t>(vertex_of_[static_cast<std::size_t>(c.node)]);
+    const auto i = static_cast<std::size_t>(c.blade);
+    BladeObservation& blade = b.blades[i];
+    const double pressure = c.normal_force / std::max(area_[v], 1e-12);
+    b.pressure[v] = pressure;
+    ++blade.contacts;
+    blade.peak = std::max(blade.peak, pressure);
+    if ((s.blades[i].X_W.inverse() * place(s, c.node)).z() < kTip) blade.tip = std::max(blade.tip, pressure);
+    blade.area += c.share * area_[v];
+    total[i] += c.normal_force;
+  }
+  for (std::size_t i = 0; i < blades_.size(); ++i) b.blades[i].mean = b.blades[i].area > 0.0 ? total[i] / b.blades[i].area : 0.0;
+}
+
+double BrainScene::exposed_share(const BrainState& s) noexcept {
+  if (model_->target_radius <= 0.0) return 0.0;
+  positions_ = model_->cortex.mesh.nodes + s.fem.u;
+  int seen = 0;
+  for (int k = 0; k < kSights; ++k) {
+    const Vec3 p = model_->target_W + model_->target_radius * sight(k);
+    hits_.clear();
+    tree_.overlaps({p, p + Vec3(0, 0, 1.0)}, hits_);
+    const bool hidden = std::any_of(hits_.begin(), hits_.end(), [&](int t) {
+      const Triangle& c = tree_.triangles()[static_cast<std::size_t>(t)];
+      return covers(positions_.col(c[0]), positions_.col(c[1]), positions_.col(c[2]), p);
+    });
+    seen += hidden ? 0 : 1;
+  }
+  return double(seen) / kSights;
+}
+
+void BrainScene::observe(const BrainState& s, const std::array<std::int32_t, 3>& valid, Observation& o) noexcept {
+  const double dt = fem_.options().dt;
+  measure(s, o);
+  for (std::size_t k = 0; k < model_->cortex.surface_nodes.size(); ++k) o.brain.positions.col(static_cast<Eigen::Index>(k)) = place(s, model_->cortex.surface_nodes[k]);
+  o.n_tools = static_cast<int>(s.blades.size());
+  for (std::size_t i = 0; i < s.blades.size(); ++i) {
+    const BladeState& blade = s.blades[i];
+    ToolObservation& tool = o.tools[i];
+    tool.v_W = (blade.X_W.p - blades_[i].X_before.p) / dt;
+    tool.X_WT = blade.X_W;
+    tool.X_WD = blade.X_WD;
+    tool.f_T_W = blade.force;
+    tool.input_valid = valid[i] != 0;
+    BladeObservation& b = o.brain.blades[i];
+    b.force_W = blade.force;
+    b.torque_W = blade.torque;
+    const PivotForce pivot = pivot_force(blade.X_W.p, blade.X_W * Vec3(0, 0, model_->blades[i].grip), blade.force, blade.torque);
+    b.push_W = pivot.push;
+    b.turn_W = pivot.turn;
+    b.parked = blade.parked != 0;
+  }
+  o.brain.exposed = s.exposed;
+  o.brain.veins_torn = 0;
+  for (std::size_t k = 0; k < s.torn.size(); ++k) o.brain.veins_torn += o.brain.vein_torn[k] = s.torn[k];
+  o.brain.iterations = summary_.iterations;
+  o.brain.residual = summary_.residual;
+}
+
+void BrainScene::size_observation(Observation& o) const {
+  BrainObservation& b = o.brain;
+  b.n = static_cast<int>(model_->cortex.surface_nodes.size());
+  b.positions = Points::Zero(3, b.n);
+  b.pressure.assign(static_cast<std::size_t>(b.n), 0.0);
+  b.n_blades = static_cast<int>(blades_.size());
+  b.vein_torn.assign(model_->veins.size(), 0);
+}
+
+void describe_brain(const BrainModel& model, BrainDescription& b) {
+  const std::vector<int>& nodes = model.cortex.surface_nodes;
+  const auto vertex = [&](int node) { return static_cast<int>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()); };
+  b.name = model.name;
+  b.rest.resize(3, static_cast<Eigen::Index>(nodes.size()));
+  for (std::size_t k = 0; k < nodes.size(); ++k) b.rest.col(static_cast<Eigen::Index>(k)) = model.cortex.mesh.nodes.col(nodes[k]);
+  for (const Triangle& t : model.cortex.surface) b.triangles.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
+  for (const BladeShape& shape : model.blades) {
+    const RigidSurface surface = surface_of(shape);
+    b.blades.push_back({shape.name, surface.vertices, surface.triangles, shape.width, shape.grip});
+  }
+  for (const BridgingVein& v : model.veins) b.veins.push_back({vertex(v.node), v.dura_W});
+  b.target_W = model.target_W;
+  b.target_radius = model.target_radius;
+  b.time_compression = model.time_compression;
+}
+
+void BrainScene::match(const BrainState& s) {
+  fem_.match(s.fem);
+  for (std::size_t i = 0; i < blades_.size(); ++i) blades_[i].X_before = blades_[i].X_now = s.blades[i].X_W;
+}
+
+std::array<std::pair<const char*, std::uint64_t>, 8> brain_hashes(const BrainState& s) noexcept {
+  const auto points = [](const Points& p) { return hash_bytes(p.data(), sizeof(double) * static_cast<std::size_t>(p.size())); };
+  std::uint64_t contacts = s.contacts.size(), blades = s.blades.size();
+  for (const BladeContact& c : s.contacts) {
+    const std::array<double, 13> row = {double(c.node), double(c.blade), double(c.triangle), double(c.side), c.normal_force, c.share, double(c.slipping),
+                                        c.friction.x(), c.friction.y(), c.friction.z(), c.anchor_T.x(), c.anchor_T.y(), c.anchor_T.z()};
+    contacts = hash_bytes(row.data(), sizeof row, contacts);
+  }
+  for (const BladeState& b : s.blades) {
+    for (const Vec3* v : {&b.X_W.p, &b.X_WD.p, &b.force, &b.torque}) blades = hash_bytes(v->data(), 3 * sizeof(double), blades);
+    for (const Quat* q : {&b.X_W.q, &b.X_WD.q}) blades = hash_bytes(q->coeffs().data(), 4 * sizeof(double), blades);
+    const std::array<double, 3> row = {b.slid, double(b.parked), double(b.cutting)};
+    blades = hash_bytes(row.data(), sizeof row, blades);
+  }
+  std::uint64_t rest = hash_bytes(&s.exposed, sizeof s.exposed, hash_bytes(s.torn.data(), s.torn.size() * sizeof(std::int32_t)));
+  rest = hash_bytes(s.fem.removed.data(), s.fem.removed.size(), rest);
+  return {{{"brain_displacement", points(s.fem.u)}, {"brain_velocity", points(s.fem.v)}, {"brain_acceleration", points(s.fem.a)},
+           {"brain_relaxed", points(s.fem.w)},      {"brain_seen", points(s.seen)},      {"brain_contacts", contacts},
+           {"brain_blades", blades},                {"brain_flags", rest}}};
+}
+
+}  // namespace filum

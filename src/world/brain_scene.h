@@ -1,0 +1,55 @@
+#pragma once
+// The step of a scene with a brain: blades follow their hands, tissue follows the blades, pressure is measured.
+
+#include <memory>
+
+#include "collision/surface_tree.h"
+#include "world/brain_model.h"
+#include "world/inputs.h"
+#include "world/observation.h"
+
+namespace filum {
+
+class BrainScene {
+ public:
+  explicit BrainScene(std::shared_ptr<const BrainModel> model);
+
+  BrainState start() const;
+  void size_observation(Observation& o) const;
+
+  /// Reports events into o; allocates nothing.
+  void step(const Inputs& inputs, BrainState& s, std::array<std::int32_t, 3>& valid, Observation& o) noexcept;
+  void observe(const BrainState& s, const std::array<std::int32_t, 3>& valid, Observation& o) noexcept;
+  /// After a state was restored.
+  void match(const BrainState& s);
+
+ private:
+  void move_blades(const Inputs& inputs, BrainState& s, std::array<std::int32_t, 3>& valid, Observation& o) noexcept;
+  void find_candidates(const BrainState& s) noexcept;
+  void pull_veins(BrainState& s, Observation& o) noexcept;
+  void measure(const BrainState& s, Observation& o) noexcept;
+  void report(BrainState& s, Observation& o) noexcept;
+  double exposed_share(const BrainState& s) noexcept;
+  Vec3 place(const BrainState& s, int node) const noexcept { return model_->cortex.mesh.nodes.col(node) + s.fem.u.col(node); }
+
+  std::shared_ptr<const BrainModel> model_;
+  LinearFem fem_;
+  SpatulaContact contact_;
+  SurfaceTree tree_;
+  std::vector<RigidSurface> surfaces_;
+  std::vector<MovingBlade> blades_;
+  std::vector<int> vertex_of_;   // node -> vertex of the surface, -1 inside
+  std::vector<double> area_;     // [m2], of each vertex
+  std::vector<int> hits_, candidates_;
+  std::vector<char> marked_;     // nodes among the candidates
+  Points positions_, loads_;     // [m], [N], of all nodes
+  FemSummary summary_;
+};
+
+/// Fills the brain of a description.
+void describe_brain(const BrainModel& model, BrainDescription& d);
+
+/// Hashes of the arrays of a brain's state, by name.
+std::array<std::pair<const char*, std::uint64_t>, 8> brain_hashes(const BrainState& s) noexcept;
+
+}  // namespace filum
