@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "training/knot_classifier.h"
+#include "training/retraction.h"
 #include "training/step_recogniser.h"
 
 namespace filum {
@@ -85,6 +86,7 @@ struct Result {
   std::vector<std::string> verdict;  // why passed or not, in words
   KnotReport knot;
   std::optional<SecurityTest> security;
+  std::optional<PressureReport> pressure;  // of brain retraction
   Measures measures;
   std::vector<TaskEvent> events;
   std::vector<Curve> series;  // at most kMaxCurvePoints each

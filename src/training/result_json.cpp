@@ -87,6 +87,29 @@ Json measures_json(const Measures& m) {
   return json;
 }
 
+Json pressure_json(const PressureReport& p) {
+  const auto mmhg = [](double pascal) { return finite(pascal / kMmHg); };
+  Json bands = Json::object();
+  for (std::size_t k = 0; k < p.time_in_band.size(); ++k) bands[name_of(static_cast<PressureBand>(k))] = finite(p.time_in_band[k]);
+  return {{"peak_mmhg", mmhg(p.peak)},
+          {"tip_mmhg", mmhg(p.tip)},
+          {"mean_mmhg", mmhg(p.mean)},
+          {"force_n", finite(p.force)},
+          {"dose", mmhg(p.dose / 60.0)},
+          {"dose_unit", "mmHg min"},
+          {"risk", finite(p.risk)},
+          {"time_in_band", bands},
+          {"loaded_longest_s", finite(p.loaded_longest)},
+          {"releases", p.releases},
+          {"slips", p.slips},
+          {"edge_cuts", p.edge_cuts},
+          {"veins_torn", p.veins_torn},
+          {"exposed", finite(p.exposed)},
+          {"press_error_mmhg", mmhg(p.press_error)},
+          {"perfusion", {{"on", p.limits.perfusion}, {"least_mmhg", mmhg(p.perfusion_least)}, {"injured", p.injured}}},
+          {"limits", {{"title", p.limits.title}, {"version", p.limits.version}, {"label", p.limits.label}, {"source", p.limits.source}}}};
+}
+
 Json events_json(const std::vector<TaskEvent>& events) {
   Json list = Json::array();
   for (const TaskEvent& e : events) {
@@ -111,6 +134,7 @@ std::string result_json(const Result& r, bool full) {
                {"score", score_json(r)},
                {"knot", knot_json(r)},
                {"events", events_json(r.events)}};
+  if (r.pressure) json["pressure"] = pressure_json(*r.pressure);
   json["series"] = Json::array();
   for (const Curve& c : r.series) {
     json["series"].push_back({{"name", c.name},

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "training/metrics.h"
+#include "training/retraction.h"
 
 namespace filum {
 namespace {
@@ -82,6 +83,8 @@ double value_of(Measure measure, const Result& r) {
     case Measure::knot_class:
     case Measure::tail_lengths:
       return kNaN;
+    default:
+      return r.pressure ? retraction_value(measure, *r.pressure) : kNaN;
   }
   return kNaN;
 }
@@ -171,7 +174,7 @@ bool needs_finish(Measure measure) {
     case Measure::objects_broken:
       return true;
     default:
-      return false;
+      return measure >= Measure::pressure_peak;  // all of brain retraction
   }
 }
 
@@ -203,7 +206,7 @@ void judge(const Task& task, bool broken, Result& r) {
   if (task.demonstration_only) fail("a demonstration does not pass");
   if (!r.finished) fail("not all steps were done");
   if (broken) fail("the thread broke");
-  if (!task.laboratory && !accepted(task, r.knot.knot_class))
+  if (task.has_knot() && !accepted(task, r.knot.knot_class))
     fail("the knot is a " + r.knot.knot_class + ", not a " + joined(task.accept));
   if (r.knot.knot_class != "unknot" && !r.knot.encloses_post) fail("the knot does not enclose the post");
   if (task.required_security > 0.0) {
@@ -303,6 +306,17 @@ void score(const Task& task, bool broken, Result& result) {
     result.total += result.items.back().points;
   }
   judge(task, broken, result);
+}
+
+void add_pressure_curves(Result& result) {
+  const PressureReport& p = *result.pressure;
+  const auto scaled = [](std::vector<double> values, double unit) {
+    for (double& v : values) v /= unit;
+    return values;
+  };
+  result.series.push_back(curve("pressure", "Largest pressure under the blades", "mmHg", p.time, scaled(p.pressure, kMmHg)));
+  result.series.push_back(curve("dose", "Dose", "mmHg.min", p.time, scaled(p.dose_curve, 60.0 * kMmHg)));
+  result.series.push_back(curve("exposed", "Share of the target seen", "-", p.time, p.exposed_curve));
 }
 
 void add_curves(const SeriesLog& log, const SceneDescription& scene, Result& result) {

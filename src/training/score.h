@@ -17,4 +17,7 @@ void score(const Task& task, bool broken, Result& result);
 /// Curves and paths for the plots, thinned to kMaxCurvePoints.
 void add_curves(const SeriesLog& log, const SceneDescription& scene, Result& result);
 
+/// Pressure, dose and exposure of a retraction over time.
+void add_pressure_curves(Result& result);
+
 }  // namespace filum

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "base/error.h"
 #include "base/units.h"
+#include "training/retraction.h"
 
 namespace filum {
 namespace {
@@ -38,6 +40,16 @@ constexpr std::array kMeasures = {
     MeasureName{Measure::force_share, "force-share", "-"},
     MeasureName{Measure::force_excess, "force-excess", "N"},
     MeasureName{Measure::objects_broken, "objects-broken", "-"},
+    MeasureName{Measure::pressure_peak, "pressure-peak", "Pa"},
+    MeasureName{Measure::pressure_tip, "pressure-tip", "Pa"},
+    MeasureName{Measure::pressure_dose, "pressure-dose", "Pa.s"},
+    MeasureName{Measure::time_in_red, "time-in-red", "s"},
+    MeasureName{Measure::press_error, "press-error", "Pa"},
+    MeasureName{Measure::loaded_longest, "loaded-longest", "s"},
+    MeasureName{Measure::exposed, "exposed", "-"},
+    MeasureName{Measure::slips, "slips", "-"},
+    MeasureName{Measure::edge_cuts, "edge-cuts", "-"},
+    MeasureName{Measure::veins_torn, "veins-torn", "-"},
 };
 
 const MeasureName& entry_of(Measure measure) {
@@ -95,6 +107,22 @@ TaskStep parse_lab_step(const YamlNode& node) {
   if (step.kind == StepKind::hold) step.seconds = node.quantity("seconds", "s", Range::between(1.0, 600.0));
   if (step.kind == StepKind::place) step.object = node.integer("object", 0, 7);
   return step;
+}
+
+/// Goals of brain retraction, and the steps that show them.
+void parse_retraction(const YamlNode& file, const std::string& root, Task& task) {
+  auto retraction = std::make_shared<RetractionTask>();
+  retraction->limits = load_pressure_limits(root + "/" + file.text("limits"));
+  for (const YamlNode& node : file.items("steps")) {
+    TaskStep step;
+    step.throw_number = 0;
+    step.name = node.text("name");
+    step.hint = node.text("hint");
+    task.steps.push_back(step);
+    retraction->goals.push_back(parse_goal(node));
+  }
+  task.throws = 0;
+  task.retraction = std::move(retraction);
 }
 
 Measure parse_measure(const YamlNode& node) {
@@ -190,7 +218,7 @@ double Task::max_total() const {
   return sum;
 }
 
-Task parse_task(const YamlNode& file) {
+Task parse_task(const YamlNode& file, const std::string& root) {
   file.choice("format", {"filum-task/1"});
   Task task;
   task.name = file.text("name");
@@ -199,17 +227,20 @@ Task parse_task(const YamlNode& file) {
   task.suture = file.text("suture");
   task.demonstration_only = file.flag_or("demonstration_only", false);
   task.time_limit = file.quantity("time_limit", "s", Range::between(1.0, 3600.0));
-  task.laboratory = file.has("kind") && file.choice("kind", {"knot", "laboratory"}) == "laboratory";
+  const std::string kind = file.has("kind") ? file.choice("kind", {"knot", "laboratory", "retraction"}) : "knot";
+  task.laboratory = kind == "laboratory";
   if (task.laboratory) {
     task.lab_tool = file.integer("tool", 0, 2);
     task.throws = 0;
+  } else if (kind == "retraction") {
+    parse_retraction(file, root, task);
   } else {
     task.accept = parse_accept(file);
     task.throws = file.integer("throws", 1, 4);
   }
   task.required_security = file.quantity_or("required_security", "N", 0.0, Range::not_negative());
   if (file.has("recognition")) task.recognition = parse_recognition(file.map("recognition"));
-  for (const YamlNode& node : file.items("steps")) 
+  for (const YamlNode& node : kind == "retraction" ? std::vector<YamlNode>() : file.items("steps"))
     task.steps.push_back(task.laboratory ? parse_lab_step(node) : parse_step(node, task.throws));
   for (const YamlNode& node : file.items("rubric")) task.rubric.push_back(parse_item(node));
   if (task.steps.empty()) file.refuse("steps", "at least one step");
@@ -220,7 +251,7 @@ Task parse_task(const YamlNode& file) {
 }
 
 Task load_task(const std::string& path) {
-  return parse_task(YamlNode::load(path));
+  return parse_task(YamlNode::load(path), std::filesystem::path(path).parent_path().parent_path().parent_path().string());
 }
 
 }  // namespace filum

@@ -3,10 +3,12 @@
 // every line carries its bands, points and the source of the numbers. Format filum-task/1; unknown keys are
 // refused (InputError). Marks made from it are the simulator's estimates, no validated clinical score.
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/yaml_file.h"
+#include "training/retraction_task.h"
 
 namespace filum {
 
@@ -47,6 +49,16 @@ enum class Measure {
   force_share,
   force_excess,
   objects_broken,
+  pressure_peak,
+  pressure_tip,
+  pressure_dose,
+  time_in_red,
+  press_error,
+  loaded_longest,
+  exposed,
+  slips,
+  edge_cuts,
+  veins_torn,
 };
 const char* name_of(Measure measure);
 const char* unit_of(Measure measure);
@@ -82,6 +94,8 @@ struct Task {
   bool demonstration_only = false;  // never passes
   bool laboratory = false;          // no knot: hold, follow, place
   int lab_tool = 0;                 // whose tip is watched
+  std::shared_ptr<const RetractionTask> retraction;  // of brain retraction: goals and limits; else none
+  bool has_knot() const { return !laboratory && !retraction; }
   double time_limit = 600.0;        // [s], scored time that is recorded
   std::vector<std::string> accept;  // knot classes that pass
   int throws = 2;                   // throws that the knot has
@@ -95,6 +109,7 @@ struct Task {
 
 /// Throws InputError naming file, field, value and what was expected.
 Task load_task(const std::string& path);
-Task parse_task(const YamlNode& file);
+/// `root`: of the files a task names.
+Task parse_task(const YamlNode& file, const std::string& root = ".");
 
 }  // namespace filum

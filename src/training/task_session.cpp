@@ -26,6 +26,7 @@ TaskSession::TaskSession(Task task, const SceneDescription& scene)
       recogniser_(task_, scene_),
       lab_(task_, scene_),
       log_(scene.n_tools, task_.time_limit) {
+  if (task_.retraction) retraction_.emplace(*task_.retraction, scene_.brain.time_compression);
   events_.reserve(kMaxEvents);
   for (auto& kind : last_kept_) kind.fill(-1.0);
 }
@@ -85,7 +86,9 @@ void TaskSession::observe(const Observation& o) noexcept {
       elapsed_ += dt;
       take_sample(o);
     }
-    if (task_.laboratory) {
+    if (retraction_) {
+      retraction_->observe(o, dt, !paused_, events_);
+    } else if (task_.laboratory) {
       lab_.observe(o, dt, !paused_, events_);
     } else {
       recogniser_.observe(o, events_);
@@ -114,7 +117,9 @@ std::vector<TaskWarning> TaskSession::warnings() const {
   }
   const std::string& seen = recogniser_.knot_class();
   const bool accepted = std::find(task_.accept.begin(), task_.accept.end(), seen) != task_.accept.end();
-  if (!task_.laboratory && recogniser_.n_throws() >= task_.throws && !accepted) {
+  if (retraction_)
+    for (auto& [level, code, text] : retraction_->pressure().messages()) list.push_back({level, code, text});
+  if (task_.has_knot() && recogniser_.n_throws() >= task_.throws && !accepted) {
     list.push_back(
         {"warn", "wrong-knot", "The knot now is: " + seen + ". Asked for: " + task_.accept.front() + "."});
   }
@@ -126,7 +131,7 @@ std::vector<TaskWarning> TaskSession::warnings() const {
 
 TaskStatus TaskSession::status() const {
   TaskStatus s;
-  s.step_index = task_.laboratory ? lab_.step() : recogniser_.step();
+  s.step_index = retraction_ ? retraction_->step() : task_.laboratory ? lab_.step() : recogniser_.step();
   for (const TaskStep& step : task_.steps) s.steps.push_back(step.name);
   s.done = done();
   if (s.done) {
@@ -162,7 +167,8 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
   r.seconds = elapsed_;
   r.security = security;
   r.events = events_;
-  if (observed_ && !task_.laboratory) {
+  if (retraction_) r.pressure = retraction_->report();
+  if (observed_ && task_.has_knot()) {
     const ThreadPart part = tied_part(last_);
     const Points nodes = last_.positions.middleCols(part.first, std::max(0, part.nodes()));
     r.knot = classify_knot(nodes, last_.radius, scene_.has_post ? &scene_.post : nullptr);
@@ -184,6 +190,7 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
   score(task_, last_.broken, r);
   if (failed_) r.verdict.push_back("scoring stopped early: out of memory");
   add_curves(log_, scene_, r);
+  if (r.pressure) add_pressure_curves(r);
   return r;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "training/lab_watch.h"
+#include "training/retraction.h"
 #include "training/result.h"
 #include "training/series_log.h"
 #include "training/step_recogniser.h"
@@ -45,7 +46,9 @@ class TaskSession {
   /// Events since the start, in order, at most kMaxEvents of the world's. Events that may come every step
   /// ("overrun", "slip", "solver-trouble", "thread-overload") are kept once every kEventPause for each tool.
   const std::vector<TaskEvent>& events() const { return events_; }
-  bool done() const { return task_.laboratory ? lab_.done() : recogniser_.done(); }
+  bool done() const { return retraction_ ? retraction_->done() : task_.laboratory ? lab_.done() : recogniser_.done(); }
+  /// Of brain retraction, else none.
+  const RetractionWatch* retraction() const { return retraction_ ? &*retraction_ : nullptr; }
   const Task& task() const { return task_; }
 
   /// Classifies the knot anew and scores. May be called again, e.g. once the security test has been made.
@@ -66,6 +69,7 @@ class TaskSession {
   SceneDescription scene_;
   StepRecogniser recogniser_;
   LabWatch lab_;  // of the laboratory's tasks, in place of the recogniser
+  std::optional<RetractionWatch> retraction_;  // of brain retraction, in place of both
   SeriesLog log_;
   std::vector<TaskEvent> events_;
   Observation last_;  // newest

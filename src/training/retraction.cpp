@@ -1,0 +1,134 @@
+#include "training/retraction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace filum {
+namespace {
+
+constexpr double kSamples = 10.0;         // [Hz] of the scene
+constexpr std::size_t kMostSamples = 40000;
+
+double peak_of(const Observation& o) {
+  double peak = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(o.brain.n_blades); ++i) peak = std::max(peak, o.brain.blades[i].peak);
+  return peak;
+}
+
+}  // namespace
+
+RetractionGoal parse_goal(const YamlNode& node) {
+  RetractionGoal g;
+  const std::string kind = node.choice("kind", {"press", "release", "expose", "hold"});
+  g.seconds = node.quantity("for", "s", Range::between(0.0, 7200.0));
+  const Range any = Range::not_negative();
+  if (kind == "press") {
+    g.kind = RetractionGoal::Kind::press;
+    g.low = node.quantity("from", "mmHg", any);
+    g.high = node.quantity("to", "mmHg", {g.low, std::numeric_limits<double>::infinity(), true});
+  } else if (kind == "release") {
+    g.kind = RetractionGoal::Kind::release;
+    g.high = node.quantity("below", "mmHg", Range::positive());
+  } else {
+    g.kind = kind == "expose" ? RetractionGoal::Kind::expose : RetractionGoal::Kind::hold;
+    g.share = node.number_or("share", 0.0, Range::between(0.0, 1.0));
+    if (kind == "hold") g.low = node.quantity_or("from", "mmHg", 0.0, any);
+    if (g.share <= 0.0 && g.low <= 0.0) node.refuse("share", "a share of the target above 0" + std::string(kind == "hold" ? ", or a pressure `from`" : ""));
+  }
+  return g;
+}
+
+RetractionWatch::RetractionWatch(const RetractionTask& task, double time_compression)
+    : task_(task), pressure_(task.limits, time_compression), compression_(time_compression) {
+  for (auto* curve : {&report_.time, &report_.pressure, &report_.dose_curve, &report_.exposed_curve}) curve->reserve(kMostSamples);
+  report_.perfusion_least = task.limits.arterial;
+}
+
+bool RetractionWatch::met(const RetractionGoal& g, const Observation& o, double peak) const {
+  switch (g.kind) {
+    case RetractionGoal::Kind::press:
+      return peak >= g.low && peak <= g.high;
+    case RetractionGoal::Kind::release:
+      return peak < g.high;
+    case RetractionGoal::Kind::expose:
+      return o.brain.exposed >= g.share;
+    case RetractionGoal::Kind::hold:
+      return o.brain.exposed >= g.share && peak >= g.low;
+  }
+  return false;
+}
+
+void RetractionWatch::sample(const Observation& o, double peak) {
+  if (report_.time.size() >= kMostSamples) return;
+  if (!report_.time.empty() && o.time < report_.time.back() + 1.0 / kSamples - 1e-9) return;
+  report_.time.push_back(o.time);
+  report_.pressure.push_back(peak);
+  report_.dose_curve.push_back(pressure_.dose());
+  report_.exposed_curve.push_back(o.brain.exposed);
+}
+
+void RetractionWatch::observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events) {
+  if (!scored || done()) return;
+  const double peak = peak_of(o);
+  pressure_.observe(peak, dt);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(o.brain.n_blades); ++i) {
+    report_.tip = std::max(report_.tip, o.brain.blades[i].tip);
+    report_.mean = std::max(report_.mean, o.brain.blades[i].mean);
+    report_.force = std::max(report_.force, o.brain.blades[i].force_W.norm());
+  }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(o.n_events); ++k) {
+    const std::string_view name = o.events[k].name;
+    report_.slips += name == "slip" ? 1 : 0;
+    report_.edge_cuts += name == "edge-cut" ? 1 : 0;
+  }
+  report_.veins_torn = o.brain.veins_torn;
+  report_.exposed = std::max(report_.exposed, o.brain.exposed);
+  report_.perfusion_least = std::min(report_.perfusion_least, pressure_.perfusion());
+  sample(o, peak);
+  const RetractionGoal& g = task_.goals[static_cast<std::size_t>(step_)];
+  const bool now = met(g, o, peak);
+  if (now) kept_ += dt * compression_;
+  else if (g.kind != RetractionGoal::Kind::hold) kept_ = 0.0;
+  if (now && g.kind == RetractionGoal::Kind::press) {
+    error_ += dt * std::abs(peak - 0.5 * (g.low + g.high));
+    pressing_ += dt;
+  }
+  if (!now || kept_ < g.seconds) return;
+  events.push_back({o.time, "goal-reached", -1, peak / kMmHg, "mmHg", {}});
+  ++step_;
+  kept_ = 0.0;
+}
+
+double retraction_value(Measure measure, const PressureReport& r) {
+  switch (measure) {
+    case Measure::pressure_peak: return r.peak;
+    case Measure::pressure_tip: return r.tip;
+    case Measure::pressure_dose: return r.dose;
+    case Measure::time_in_red: return r.time_in_band[3];
+    case Measure::press_error: return r.press_error;
+    case Measure::loaded_longest: return r.loaded_longest;
+    case Measure::exposed: return r.exposed;
+    case Measure::slips: return r.slips;
+    case Measure::edge_cuts: return r.edge_cuts;
+    case Measure::veins_torn: return r.veins_torn;
+    default: return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+PressureReport RetractionWatch::report() const {
+  PressureReport r = report_;
+  r.peak = pressure_.peak();
+  r.dose = pressure_.dose_largest();
+  r.risk = pressure_.risk();
+  r.time_in_band = pressure_.time_in_band();
+  r.loaded_longest = pressure_.loaded_longest();
+  r.releases = pressure_.releases();
+  r.injured = pressure_.injured();
+  r.limits = pressure_.limits();
+  r.press_error = pressing_ > 0.0 ? error_ / pressing_ : std::numeric_limits<double>::quiet_NaN();
+  return r;
+}
+
+}  // namespace filum

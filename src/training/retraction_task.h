@@ -1,0 +1,25 @@
+#pragma once
+// What a task of brain retraction asks for (training/retraction.h).
+
+#include <vector>
+
+#include "training/pressure.h"
+
+namespace filum {
+
+struct RetractionGoal {
+  enum class Kind { press, release, expose, hold } kind = Kind::press;
+  double low = 0.0, high = 0.0;  // [Pa]
+  double share = 0.0;
+  double seconds = 0.0;          // [s]
+};
+
+struct RetractionTask {
+  PressureLimits limits;
+  std::vector<RetractionGoal> goals;
+};
+
+/// A step of a task file. Throws InputError.
+RetractionGoal parse_goal(const YamlNode& node);
+
+}  // namespace filum

@@ -1,0 +1,105 @@
+#include "training/retraction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "training/task_session.h"
+
+namespace filum {
+namespace {
+
+std::string task_file(const std::string& name) { return std::string(FILUM_SOURCE_DIR) + "/curricula/" + name + "/task.yaml"; }
+
+/// A scene whose pressure and exposure are set by hand.
+struct Bench {
+  SceneDescription scene;
+  Observation o;
+  TaskSession session;
+
+  explicit Bench(const std::string& task, double compression = 1.0) : scene(described(compression)), session(load_task(task_file(task)), scene) {
+    o.n_tools = scene.n_tools;
+    o.brain.n_blades = scene.n_tools;
+    for (auto& tool : o.tools) tool.input_valid = true;
+  }
+  static SceneDescription described(double compression) {
+    SceneDescription d;
+    d.n_tools = 2;
+    d.brain.time_compression = compression;
+    return d;
+  }
+  void hold(double mmhg, double seconds, double exposed = 0.0, const char* event = nullptr) {
+    for (double t = 0.0; t < seconds - 1e-9; t += 0.01) {
+      o.time += 0.01;
+      o.brain.blades[0].peak = o.brain.blades[0].mean = mmhg * kMmHg;
+      o.brain.exposed = exposed;
+      o.n_events = event != nullptr && t == 0.0 ? 1 : 0;
+      o.events[0] = {event != nullptr ? event : "", 0, 1.0, "-"};
+      session.observe(o);
+    }
+  }
+};
+
+TEST(Retraction, PressingToTheBandThreeTimesPasses) {
+  Bench b("press-to-target");
+  for (int k = 0; k < 3; ++k) {
+    b.hold(15, 4);
+    b.hold(0, 2);
+  }
+  EXPECT_TRUE(b.session.done());
+  const Result r = b.session.finish();
+  EXPECT_TRUE(r.passed) << (r.verdict.empty() ? "" : r.verdict[0]);
+  ASSERT_TRUE(r.pressure);
+  EXPECT_NEAR(r.pressure->peak / kMmHg, 15.0, 1e-9);
+  EXPECT_NEAR(r.pressure->press_error, 0.0, 1e-6);
+  EXPECT_EQ(r.pressure->releases, 3);
+  for (const ScoreItem& item : r.items) EXPECT_FALSE(item.why.empty());
+}
+
+TEST(Retraction, TheWrongPressureNeverEndsTheStep) {
+  Bench b("press-to-target");
+  b.hold(25, 30);
+  EXPECT_EQ(b.session.status().step_index, 0);
+  const Result r = b.session.finish();
+  EXPECT_FALSE(r.finished);
+  EXPECT_FALSE(r.passed);
+  EXPECT_EQ(r.total, 0.0);  // a low peak earns nothing when the task was not done
+}
+
+TEST(Retraction, LeavingTheBandBeginsTheTimeAnew) {
+  Bench b("press-to-target");
+  b.hold(15, 2.5);
+  b.hold(22, 0.1);
+  b.hold(15, 2.5);
+  EXPECT_EQ(b.session.status().step_index, 0);
+  b.hold(15, 0.7);
+  EXPECT_EQ(b.session.status().step_index, 1);
+}
+
+TEST(Retraction, SlipsAndCutsAreCountedAndWarned) {
+  Bench b("press-to-target");
+  b.hold(15, 1, 0.0, "slip");
+  b.hold(45, 1, 0.0, "edge-cut");
+  EXPECT_EQ(b.session.retraction()->report().slips, 1);
+  EXPECT_EQ(b.session.retraction()->report().edge_cuts, 1);
+  bool alarmed = false;
+  for (const TaskWarning& w : b.session.status().warnings) alarmed = alarmed || w.code == "pressure-alarm";
+  EXPECT_TRUE(alarmed);
+}
+
+TEST(Retraction, TimesAreThePatientsWhereTheSceneIsCompressed) {
+  Bench b("press-to-target", 10.0);
+  b.hold(15, 0.35);  // 3.5 s
+  EXPECT_EQ(b.session.status().step_index, 1);
+  EXPECT_NEAR(b.session.retraction()->report().time_in_band[0] + b.session.retraction()->report().time_in_band[1], 3.4, 0.01);
+}
+
+TEST(Retraction, GoalsThatAskForNothingAreRefused) {
+  EXPECT_THROW(parse_goal(YamlNode::parse("{ kind: press, from: \"20 mmHg\", to: \"10 mmHg\", for: \"3 s\" }", "t")), InputError);
+  EXPECT_THROW(parse_goal(YamlNode::parse("{ kind: expose, for: \"3 s\" }", "t")), InputError);
+  EXPECT_THROW(parse_goal(YamlNode::parse("{ kind: squeeze, for: \"3 s\" }", "t")), InputError);
+}
+
+}  // namespace
+}  // namespace filum
