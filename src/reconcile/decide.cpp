@@ -1,0 +1,311 @@
+// From fits to a verdict. The rules stand in rules.h; every set that was tried is kept with the reason why it was not taken.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "reconcile/search.h"
+
+namespace filum::reconcile {
+namespace {
+
+std::vector<Effect> effects_in(const Fit& f) {
+  std::vector<Effect> out;
+  for (const Form* form : f.forms) out.push_back(form->effect);
+  return out;
+}
+
+std::string names(const std::vector<Effect>& effects) {
+  std::string out;
+  for (const Effect e : effects) out += (out.empty() ? "" : " + ") + info(e).name;
+  return out;
+}
+
+std::string form_text(const Fit& f) {
+  std::string out;
+  for (const Form* form : f.forms) out += (out.empty() ? "" : "; ") + form->text;
+  return out;
+}
+
+/// Groups of trials of one protocol; each is held out in turn.
+std::vector<std::vector<bool>> folds(const Dataset& d) {
+  std::map<std::string, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < d.trials.size(); ++i)
+    if (!d.trials[i].hold_out) groups[d.protocol_text(d.trials[i])].push_back(i);
+  std::vector<std::vector<std::size_t>> members;
+  for (auto& [key, g] : groups) members.push_back(g);
+  if (members.size() == 1 && members[0].size() > 1) {  // one protocol only: leave replicates out
+    const auto all = members[0];
+    members.clear();
+    for (const std::size_t i : all) members.push_back({i});
+  }
+  if (members.size() < 2) return {};
+  std::vector<std::vector<bool>> out(std::min<std::size_t>(4, members.size()), std::vector<bool>(d.trials.size(), false));
+  for (std::size_t g = 0; g < members.size(); ++g)
+    for (const std::size_t i : members[g]) out[g % out.size()][i] = true;
+  return out;
+}
+
+struct Challenge {
+  bool done = false;
+  double explained = 1.0;  // share of the held-out misfit that goes
+  Gap gap;
+  std::string how;
+};
+
+void add_squares(const RigModel& model, const Noise& noise, const Fit& f, double& sum, int& n) {
+  (void)model;
+  for (const auto& trial : f.residual)
+    for (std::size_t c = 0; c < trial.size(); ++c)
+      for (const double r : trial[c])
+        if (std::isfinite(r)) sum += std::pow(r / noise.output[c].sigma, 2), ++n;
+}
+
+/// Predicts what was not fitted: the trials marked hold_out, else every protocol in turn.
+Challenge challenge(const Search& search, const Fit& base, const Fit& named, int threads) {
+  const Fitter& all = search.fitter();
+  const Dataset& d = all.model().data();
+  std::vector<bool> held(d.trials.size());
+  for (std::size_t i = 0; i < held.size(); ++i) held[i] = d.trials[i].hold_out;
+  const bool marked = std::find(held.begin(), held.end(), true) != held.end();
+  auto parts = marked ? std::vector<std::vector<bool>>{held} : folds(d);
+  Challenge out;
+  out.how = marked ? "trials marked hold_out" : parts.empty() ? "nothing can be held out" : "each protocol in turn";
+  std::vector<Fit> b(parts.size()), a(parts.size());
+  parallel(threads, 2 * parts.size(), [&](std::size_t k) {
+    const std::size_t i = k / 2;
+    const Fit& start = k % 2 == 0 ? base : named;
+    Fit& result = k % 2 == 0 ? b[i] : a[i];
+    if (marked) {
+      result = all.transfer(start, held);
+      return;
+    }
+    Fitter part(all);
+    for (std::size_t t = 0; t < held.size(); ++t) part.use[t] = !d.trials[t].hold_out && !parts[i][t];
+    result = all.transfer(part.fit(start.forms, start.base, start.params, {6, 1e-4}, &start), parts[i]);
+  });
+  double before = 0, after = 0, sb = 0, sa = 0;
+  int n = 0, m = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    // a fold without which the effect cannot be learnt says nothing about transfer
+    if (a[i].chi2 > 3.0 * b[i].chi2 && parts.size() > 2) continue;
+    before += b[i].chi2 / search.dispersion() - b[i].samples;
+    after += a[i].chi2 / search.dispersion() - a[i].samples;
+    add_squares(all.model(), all.noise(), b[i], sb, n);
+    add_squares(all.model(), all.noise(), a[i], sa, m);
+  }
+  if (n == 0) return out;
+  out.gap = {std::sqrt(sb / n), std::sqrt(sa / m)};
+  out.done = before > 4.0 * std::sqrt(2.0 * n);
+  if (out.done) out.explained = 1.0 - std::max(0.0, after) / before;
+  return out;
+}
+
+/// Whether the baseline with the model file's own values misfits although the refitted one does not.
+bool refit_matters(const Search& search) {
+  const Fitter& fitter = search.fitter();
+  const Dataset& d = fitter.model().data();
+  bool with_prior = false;
+  for (const int i : fitter.free_baseline()) with_prior = with_prior || d.prior.count(fitter.model().baseline()[static_cast<std::size_t>(i)].name) > 0;
+  if (!with_prior) return false;
+  Fit nominal = search.base();
+  for (const int i : fitter.free_baseline()) nominal.base[static_cast<std::size_t>(i)] = d.nominal.at(fitter.model().baseline()[static_cast<std::size_t>(i)].name);
+  const Fit there = fitter.transfer(nominal, fitter.use);
+  return there.chi2 - search.base().chi2 > 12.0 * static_cast<double>(fitter.free_baseline().size()) && search.material(there, search.base()) > 1.0;
+}
+
+void list_tried(const Search& search, Result& r, const Fit* taken) {
+  for (const Fit& f : search.candidates()) {
+    Tried t{effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), &f == taken, ""};
+    char text[200];
+    if (t.taken) t.why = "taken";
+    else if (t.evidence > -r.rules.accept_evidence) t.why = "no evidence beyond the baseline";
+    else if (t.explained < r.rules.explained) std::snprintf(text, sizeof text, "explains %.0f %% of what is missing", 100 * t.explained), t.why = text;
+    else if (taken != nullptr && search.bic(f) > search.bic(*taken)) std::snprintf(text, sizeof text, "worse than the best by %.1f", search.bic(f) - search.bic(*taken)), t.why = text;
+    else t.why = "further effect does not earn its place";
+    if (f.at_bound) t.why += "; a parameter stands at its bound";
+    r.tried.push_back(std::move(t));
+  }
+}
+
+/// The smallest set that the next larger one does not beat.
+const Fit* choose(const Search& search, const Rules& rules) {
+  const Fit* now = nullptr;
+  for (std::size_t size = 1; size <= static_cast<std::size_t>(rules.most_effects); ++size) {
+    const Fit* next = search.best(size);
+    if (next == nullptr) break;
+    const Fit& before = now == nullptr ? search.base() : *now;
+    const double fall = search.bic(before) - search.bic(*next);
+    const double needed = now == nullptr ? rules.accept_evidence : rules.pair_evidence;
+    const bool enough = fall >= needed && (now != nullptr || (before.chi2 - next->chi2) / search.dispersion() >= rules.detect);
+    const double share = search.explained(*next) - (now == nullptr ? 0.0 : search.explained(*now));
+    if (!enough || search.material(*next, before) < 1.0 || (now != nullptr && share < rules.pair_share)) {
+      if (now == nullptr) continue;  // two effects may cancel in the test of singles
+      break;
+    }
+    now = next;
+  }
+  return now;
+}
+
+std::vector<const Fit*> rivals_of(const Search& search, const Fit& winner, const Rules& rules) {
+  std::vector<const Fit*> out;
+  for (const Fit& f : search.candidates()) {
+    if (&f == &winner || f.forms.size() > winner.forms.size()) continue;
+    if (search.bic(f) - search.bic(winner) < rules.tie && search.explained(f) >= rules.explained) out.push_back(&f);
+  }
+  return out;
+}
+
+std::set<Effect> common(const Fit& winner, const std::vector<const Fit*>& rivals) {
+  const auto first = effects_in(winner);
+  std::set<Effect> shared(first.begin(), first.end());
+  for (const Fit* f : rivals) {
+    const auto mine = effects_in(*f);
+    std::erase_if(shared, [&](Effect e) { return std::find(mine.begin(), mine.end(), e) == mine.end(); });
+  }
+  return shared;
+}
+
+void say(Result& r, const std::string& sentence) { r.sentence = sentence; }
+
+void name(const Search& search, const Fit& winner, Result& r, int threads) {
+  const auto rivals = rivals_of(search, winner, r.rules);
+  const Fitter& fitter = search.fitter();
+  const Challenge c = challenge(search, search.base(), winner, threads);
+  r.held_out = c.gap;
+  r.held_out_how = c.how;
+  const bool holds = !c.done || c.explained >= r.rules.held_out;
+  const double explained = search.explained(winner);
+  r.effects = effect_estimates(fitter, winner, search.dispersion());
+  r.baseline = baseline_estimates(fitter, winner, search.dispersion());
+  for (const Fit& f : search.candidates())
+    if (&f != &winner && r.rivals.size() < 6) r.rivals.push_back({effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""});
+  if (explained < r.rules.explained || !holds) {
+    r.verdict = "unknown";
+    r.effects.clear();
+    char text[300];
+    std::snprintf(text, sizeof text, "Something is missing that no candidate explains: the best, %s, covers %.0f %% of it%s.", names(effects_in(winner)).c_str(), 100 * explained,
+                  holds ? "" : " and fails on protocols it was not fitted to");
+    say(r, text);
+    return;
+  }
+  const Structure left = search.structure(winner);
+  r.partial = left.z > r.rules.partial_structure && left.excess > r.rules.partial_share * (search.base().chi2 - winner.chi2 + left.excess);
+  if (rivals.empty()) {
+    r.verdict = "effect";
+    say(r, "The measurements behave as if " + names(effects_in(winner)) + (r.partial ? " acted, among something else that remains unnamed." : " acted, under these protocols.") +
+               " A rival that came within " + std::to_string(static_cast<int>(r.rules.tie)) + " units of BIC would make it ambiguous.");
+    return;
+  }
+  const auto shared = common(winner, rivals);
+  if (!shared.empty() && winner.forms.size() > 1) {
+    r.verdict = "effect";
+    r.partial = true;
+    std::erase_if(r.effects, [&](const NamedEffect& e) { return shared.count(e.effect) == 0; });
+    say(r, "All sets that explain the measurements share " + names({shared.begin(), shared.end()}) + "; what acts beside it is not decided.");
+    return;
+  }
+  r.verdict = "ambiguous";
+  r.effects.clear();
+  r.rivals.clear();
+  r.rivals.push_back({effects_in(winner), form_text(winner), search.bic(winner) - search.bic(search.base()), explained, false, ""});
+  for (const Fit* f : rivals) r.rivals.push_back({effects_in(*f), form_text(*f), search.bic(*f) - search.bic(search.base()), search.explained(*f), false, ""});
+  say(r, "These trials cannot tell " + names(effects_in(winner)) + " from " + names(effects_in(*rivals[0])) + ".");
+  const Screen screen(fitter, search.base());
+  r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
+  r.next = next_experiment(fitter, winner, *rivals[0]);
+}
+
+void name_nothing(const Search& search, Result& r, int threads) {
+  const Structure s = search.structure(search.base());
+  const double dispersion = replicate_dispersion(search.fitter(), search.base());
+  // what is left, smoothed over the block length where it stands out, in parts of full scale
+  double sum = 0.0;
+  int n = 0;
+  for (const auto& trial : search.base().residual)
+    for (std::size_t c = 0; c < trial.size(); ++c)
+      for (Eigen::Index k = 0; k + s.length <= trial[c].size(); k += s.length) {
+        const double mean = trial[c].segment(k, s.length).mean();
+        if (std::isfinite(mean)) sum += std::pow(mean / search.fitter().noise().output[c].full_scale, 2), ++n;
+      }
+  const bool seen = s.z / dispersion > r.rules.structure && n > 0 && std::sqrt(sum / n) > r.rules.materiality;
+  const Challenge c = challenge(search, search.base(), search.base(), threads);
+  r.held_out = c.gap;
+  r.held_out_how = c.how;
+  r.baseline = r.baseline_alone;
+  for (const Fit& f : search.candidates())
+    if (r.rivals.size() < 4) r.rivals.push_back({effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""});
+  if (seen) {
+    r.verdict = "unknown";
+    say(r, "The residual has a shape that noise does not have, and no candidate explains it.");
+  } else if (refit_matters(search)) {
+    r.verdict = "parameter";
+    say(r, "The model's form is right; its parameters are not those of the model file, but lie within their stated range.");
+  } else {
+    r.verdict = "agree";
+    say(r, "Nothing is missing beyond the noise and 0.6 % of full scale.");
+  }
+}
+
+void finish(const Search& search, const Fit* winner, Result& r) {
+  const Fitter& fitter = search.fitter();
+  r.noise = fitter.noise();
+  r.dispersion = search.dispersion();
+  r.before = search.base();
+  r.after = winner != nullptr ? *winner : search.base();
+  r.fit = gap_of(fitter.model(), r.noise, r.before, r.after, fitter.use);
+  r.structure_before = search.structure(search.base()).z;
+  r.structure_after = search.structure(r.after).z;
+  if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise);
+  if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after);
+  list_tried(search, r, r.verdict == "effect" ? winner : nullptr);
+}
+
+}  // namespace
+
+Gap gap_of(const RigModel& model, const Noise& noise, const Fit& before, const Fit& after, const std::vector<bool>&) {
+  double sb = 0, sa = 0;
+  int n = 0, m = 0;
+  add_squares(model, noise, before, sb, n);
+  add_squares(model, noise, after, sa, m);
+  return {n > 0 ? std::sqrt(sb / n) : 0.0, m > 0 ? std::sqrt(sa / m) : 0.0};
+}
+
+Result reconcile(const Dataset& d, const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto model = make_model(d);
+  Result r;
+  if (d.rig == Rig::tip_hold) {
+    r = reconcile_hold(d, *model, options);
+  } else {
+    r.rules = options.rules;
+    r.forms = model->all_forms();
+    if (options.progress) options.progress("lint", 0.0);
+    r.not_testable = lint(*model, r.forms, options.rules.masked, options.rules.testable);
+    // what the inputs hide altogether cannot be named; what lacks a condition stays as a rival
+    std::vector<Form> seen;
+    for (const Form& f : r.forms) {
+      const auto hidden = std::find_if(r.not_testable.begin(), r.not_testable.end(), [&](const NotTestable& n) {
+        return n.effect == f.effect && (n.why.find("masked") != std::string::npos || n.why.find("even a strong") != std::string::npos || n.why.find("sampled") != std::string::npos ||
+                                        n.why.find("too few") != std::string::npos);
+      });
+      if (hidden == r.not_testable.end()) seen.push_back(f);
+    }
+    r.forms = seen;
+    Search search(*model, r.forms, options);
+    search.run();
+    if (options.progress) options.progress("challenge", 0.85);
+    r.baseline_alone = baseline_estimates(search.fitter(), search.base(), std::max(1.0, search.structure(search.base()).dispersion));
+    const Fit* winner = choose(search, r.rules);
+    if (winner != nullptr) name(search, *winner, r, options.threads);
+    else name_nothing(search, r, options.threads);
+    finish(search, winner, r);
+  }
+  r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return r;
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,223 @@
+// Values with 95 % intervals from the curvature at the optimum (widened by the overdispersion), where the misfit sits, the shape of
+// what no effect explains, and the experiment that would tell two rivals apart.
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "base/rng.h"
+#include "reconcile/result.h"
+
+namespace filum::reconcile {
+namespace {
+
+constexpr double kTwoSided = 1.96;
+
+Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high) {
+  if (!std::isfinite(sd)) return {name, unit, value, low, high};
+  if (logarithmic) return {name, unit, value, std::max(low, value * std::exp(-kTwoSided * std::min(sd, 20.0))), std::min(high, value * std::exp(kTwoSided * std::min(sd, 20.0)))};
+  return {name, unit, value, std::max(low, value - kTwoSided * sd), std::min(high, value + kTwoSided * sd)};
+}
+
+double deviation(const Fit& f, std::size_t k, double dispersion) {
+  const auto i = static_cast<Eigen::Index>(k);
+  return i < f.covariance.rows() ? std::sqrt(std::max(0.0, f.covariance(i, i)) * dispersion) : 0.0;
+}
+
+/// Amplitude of the line of a form, mean over records and outputs, from the free columns.
+Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const std::vector<double>& p) {
+  const Dataset& d = fitter.model().data();
+  std::vector<double> all;
+  for (std::size_t i = 0; i < f.residual.size(); ++i)
+    for (std::size_t c = 0; c < f.residual[i].size(); ++c) {
+      // what the model without the line leaves, projected on the line
+      Fit without = f;
+      const auto at = static_cast<std::size_t>(std::find(f.forms.begin(), f.forms.end(), &form) - f.forms.begin());
+      without.forms.erase(without.forms.begin() + static_cast<std::ptrdiff_t>(at));
+      without.params.erase(without.params.begin() + static_cast<std::ptrdiff_t>(at));
+      std::vector<Eigen::VectorXd> raw;
+      fitter.residual(static_cast<int>(i), fitter.setting(without, static_cast<int>(i)), &raw);
+      const Trial& t = d.trials[i];
+      Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+      Eigen::Vector2d b = Eigen::Vector2d::Zero();
+      for (Eigen::Index n = 0; n < raw[c].size(); ++n) {
+        if (!std::isfinite(raw[c][n])) continue;
+        const double phase = 6.283185307179586 * p[0] * (t.time[n] - t.time[0]);
+        const Eigen::Vector2d v(std::cos(phase), std::sin(phase));
+        A += v * v.transpose();
+        b += v * raw[c][n];
+      }
+      all.push_back(A.ldlt().solve(b).norm());
+    }
+  const double mid = median(all);
+  double var = 0.0;
+  for (const double a : all) var += (a - mid) * (a - mid) / std::max<double>(1.0, static_cast<double>(all.size()) - 1.0);
+  const double half = kTwoSided * std::sqrt(var / static_cast<double>(std::max<std::size_t>(1, all.size()))) + 0.02 * mid;
+  std::string unit = "-";
+  for (const ChannelInfo& c : info(d.rig).channels)
+    if (c.name == d.outputs[0]) unit = c.unit;
+  return {"amplitude", unit, mid, std::max(0.0, mid - half), mid + half};
+}
+
+}  // namespace
+
+std::vector<Estimate> baseline_estimates(const Fitter& fitter, const Fit& fit, double dispersion) {
+  std::vector<Estimate> out;
+  const auto& base = fitter.model().baseline();
+  const Dataset& d = fitter.model().data();
+  std::vector<double> scale;
+  for (const double s : fit.log_scale) scale.push_back(std::exp(s));
+  for (std::size_t i = 0; i < base.size(); ++i) {
+    if (!fitter.model().fitted(static_cast<int>(i))) {
+      const auto m = fitter.model().measured(static_cast<int>(i), fit.base, scale);
+      if (std::isfinite(m.high)) out.push_back({base[i].name, base[i].unit, m.value, m.low, m.high});
+      continue;
+    }
+    const auto& free = fitter.free_baseline();
+    const auto at = std::find(free.begin(), free.end(), static_cast<int>(i));
+    if (at == free.end()) continue;
+    const double sd = deviation(fit, static_cast<std::size_t>(at - free.begin()), dispersion);
+    out.push_back(estimate(base[i].name, base[i].unit, fit.base[i], sd, base[i].logarithmic, fitter.low(static_cast<int>(i)), fitter.high(static_cast<int>(i))));
+  }
+  (void)d;
+  return out;
+}
+
+std::vector<NamedEffect> effect_estimates(const Fitter& fitter, const Fit& fit, double dispersion) {
+  std::vector<NamedEffect> out;
+  std::size_t k = fitter.free_baseline().size();
+  for (std::size_t f = 0; f < fit.forms.size(); ++f) {
+    const Form& form = *fit.forms[f];
+    NamedEffect named{form.effect, form.text, {}};
+    for (std::size_t i = 0; i < form.params.size(); ++i, ++k) {
+      const ParamSpec& p = form.params[i];
+      Estimate e = estimate(p.name, p.unit, fit.params[f][i], deviation(fit, k, dispersion), p.logarithmic, p.low, p.high);
+      if (p.times_baseline >= 0) {
+        const double b = fit.base[static_cast<std::size_t>(p.times_baseline)];
+        e.value *= b, e.low *= b, e.high *= b;
+      }
+      named.parameters.push_back(e);
+    }
+    if (form.effect == Effect::speed_dependent_friction && form.kind <= 2)
+      for (const Estimate& e : baseline_estimates(fitter, fit, dispersion)) named.parameters.push_back({"mu_k", "-", e.value, e.low, e.high});
+    if (form.effect == Effect::layer_rupture)
+      for (const Estimate& e : baseline_estimates(fitter, fit, dispersion))
+        if (e.name == "puncture_force") named.parameters.insert(named.parameters.begin(), {"force_1", "N", e.value, e.low, e.high});
+    if (form.line) named.parameters.push_back(amplitude(fitter, fit, form, fit.params[f]));
+    out.push_back(std::move(named));
+  }
+  return out;
+}
+
+std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& noise) {
+  const Dataset& d = model.data();
+  std::string input;
+  for (const Channel& c : d.channels)
+    if (c.input && c.name != "time" && input.empty()) input = c.name;
+  std::vector<Cell> cells;
+  double total = 0.0;
+  for (std::size_t i = 0; i < base.residual.size(); ++i) {
+    if (base.residual[i].empty()) continue;
+    const Trial& t = d.trials[i];
+    const int n = t.samples();
+    const double t0 = t.time[0], span = t.time[n - 1] - t0;
+    const Eigen::VectorXd x = input.empty() ? Eigen::VectorXd::Zero(n) : t.at(input);
+    const double range = std::max(x.maxCoeff() - x.minCoeff(), 1e-300);
+    std::map<std::pair<std::string, int>, double> excess;
+    for (int k = 0; k < n; ++k) {
+      const double rate = k > 0 ? (x[k] - x[k - 1]) / range / std::max((t.time[k] - t.time[k - 1]) / span, 1e-300) : 0.0;
+      const double away = std::abs(x[k]) - (k > 0 ? std::abs(x[k - 1]) : 0.0);
+      std::string phase = std::abs(rate) < 0.02 ? (std::abs(x[k]) < 0.05 * range ? "rest" : "hold") : away >= 0 ? "load" : "unload";
+      if (input.empty()) phase = "hold";
+      for (std::size_t c = 0; c < base.residual[i].size(); ++c) {
+        const double r = base.residual[i][c][k];
+        if (std::isfinite(r)) excess[{phase, std::min(3, static_cast<int>(4.0 * (t.time[k] - t0) / span))}] += std::pow(r / noise.output[c].sigma, 2) - 1.0;
+      }
+    }
+    for (const auto& [key, value] : excess) {
+      if (value <= 0) continue;
+      char text[80];
+      std::snprintf(text, sizeof text, "%.4g s <= t <= %.4g s", t0 + 0.25 * key.second * span, t0 + 0.25 * (key.second + 1) * span);
+      cells.push_back({t.file, key.first, text, value});
+      total += value;
+    }
+  }
+  std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.share > b.share; });
+  for (Cell& c : cells) c.share /= total;
+  return cells;
+}
+
+std::vector<Term> describe(const RigModel& model, const Fit& base) {
+  const Dataset& d = model.data();
+  std::string input;
+  for (const Channel& c : d.channels)
+    if (c.input && c.name != "time" && input.empty()) input = c.name;
+  if (input.empty()) return {};
+  const double fs = model.full_scale(d.outputs[0]);
+  const std::vector<std::string> names = {"1", input, "rate", "time", "output", input + "^2", "|rate|", "sign(rate)", input + "*time", input + "*rate", "output*rate", "output*time", input + "^3", "output^2"};
+  std::vector<Eigen::RowVectorXd> rows;
+  std::vector<double> y;
+  std::vector<int> trial;
+  for (std::size_t i = 0; i < base.residual.size(); ++i) {
+    if (base.residual[i].empty()) continue;
+    const Trial& t = d.trials[i];
+    const Eigen::VectorXd& x = t.at(input);
+    const double most = std::max(x.cwiseAbs().maxCoeff(), 1e-300), span = t.time[t.samples() - 1] - t.time[0];
+    const int step = std::max(1, t.samples() / 300);
+    for (int k = step; k < t.samples(); k += step) {
+      const double r = base.residual[i][0][k];
+      if (!std::isfinite(r)) continue;
+      const double u = x[k] / most, v = (x[k] - x[k - step]) / most / (t.time[k] - t.time[k - step]) * 0.1 * span, s = (t.time[k] - t.time[0]) / span, f = base.predicted[i][0][k] / fs;
+      Eigen::RowVectorXd row(14);
+      row << 1, u, v, s, f, u * u, std::abs(v), (v > 1e-9) - (v < -1e-9), u * s, u * v, f * v, f * s, u * u * u, f * f;
+      rows.push_back(row);
+      y.push_back(r / fs);
+      trial.push_back(static_cast<int>(i));
+    }
+  }
+  if (rows.size() < 30) return {};
+  // orthogonal matching pursuit of three terms on 30 resamplings of blocks; stability is how often a term is chosen
+  Rng rng(20260101);
+  std::map<int, int> chosen;
+  std::map<int, double> coefficient;
+  const std::size_t n = rows.size(), block = 20;
+  constexpr int kRounds = 30;
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::MatrixXd X(static_cast<Eigen::Index>(n), 14);
+    Eigen::VectorXd z(static_cast<Eigen::Index>(n));
+    for (std::size_t k = 0; k < n; ++k) {
+      static thread_local std::size_t start = 0;
+      if (k % block == 0) start = static_cast<std::size_t>(rng.below(n - std::min(block, n - 1)));
+      const std::size_t at = std::min(n - 1, start + k % block);
+      X.row(static_cast<Eigen::Index>(k)) = rows[at];
+      z[static_cast<Eigen::Index>(k)] = y[at];
+    }
+    std::vector<int> active;
+    Eigen::VectorXd left = z, beta;
+    for (int m = 0; m < 3; ++m) {
+      int best = -1;
+      double most = 0.0;
+      for (int j = 0; j < 14; ++j) {
+        const double norm = X.col(j).norm();
+        if (norm < 1e-9 || std::find(active.begin(), active.end(), j) != active.end()) continue;
+        const double c = std::abs(X.col(j).dot(left)) / norm;
+        if (c > most) most = c, best = j;
+      }
+      if (best < 0) break;
+      active.push_back(best);
+      const Eigen::MatrixXd A = X(Eigen::all, active);
+      beta = A.colPivHouseholderQr().solve(z);
+      left = z - A * beta;
+    }
+    for (std::size_t m = 0; m < active.size(); ++m) ++chosen[active[m]], coefficient[active[m]] += beta[static_cast<Eigen::Index>(m)];
+  }
+  std::vector<Term> out;
+  for (const auto& [j, count] : chosen)
+    if (count >= kRounds / 3) out.push_back({names[static_cast<std::size_t>(j)], coefficient[j] / count, static_cast<double>(count) / kRounds});
+  std::stable_sort(out.begin(), out.end(), [](const Term& a, const Term& b) { return a.stability > b.stability; });
+  return out;
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,114 @@
+#include "reconcile/hereditary.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace filum::reconcile {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Per term: decay over dt and the mean of the decay over a linear increment, A = (1 - exp(-dt/tau)) tau/dt.
+struct Step {
+  double dt = -1.0;
+  std::vector<double> decay, mean;
+
+  void set(const Kernel& k, double new_dt) {
+    if (std::abs(new_dt - dt) <= 1e-9 * new_dt) return;
+    dt = new_dt;
+    decay.resize(k.tau.size());
+    mean.resize(k.tau.size());
+    for (std::size_t i = 0; i < k.tau.size(); ++i) {
+      const double x = dt / k.tau[i];
+      decay[i] = std::exp(-x);
+      mean[i] = x < 1e-6 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
+    }
+  }
+};
+
+}  // namespace
+
+Kernel prony(double g1, double tau1) { return {1.0 - g1, {g1}, {tau1}}; }
+
+Kernel prony(double g1, double tau1, double g2, double tau2) { return {1.0 - g1 - g2, {g1, g2}, {tau1, tau2}}; }
+
+Kernel fractional(double g1, double tau1, double order) {
+  constexpr int kTerms = 13;
+  Kernel k{1.0 - g1, std::vector<double>(kTerms), std::vector<double>(kTerms)};
+  const double reach = std::min(4.0 / order, 9.0);  // of ln x; what lies beyond is gathered at the ends
+  double sum = 0.0;
+  for (int i = 0; i < kTerms; ++i) {
+    const double x = reach * (2.0 * i / (kTerms - 1) - 1.0);
+    k.weight[static_cast<std::size_t>(i)] = std::sin(order * kPi) / (std::cosh(order * x) + std::cos(order * kPi));
+    k.tau[static_cast<std::size_t>(i)] = tau1 * std::exp(x);
+    sum += k.weight[static_cast<std::size_t>(i)];
+  }
+  for (double& w : k.weight) w *= g1 / sum;
+  return k;
+}
+
+Kernel slab_drainage(double g1, double diffusivity, double size) {
+  Kernel k{1.0 - g1, {}, {}};
+  double sum = 0.0;
+  for (int n = 0; n < 8; ++n) {
+    const double m = (2 * n + 1) * kPi;
+    k.weight.push_back(8.0 / (m * m));
+    k.tau.push_back(size * size / (m * m * diffusivity));
+    sum += k.weight.back();
+  }
+  for (double& w : k.weight) w *= g1 / sum;
+  return k;
+}
+
+Kernel radial_drainage(double g1, double diffusivity, double size) {
+  constexpr double kZeros[] = {2.404825558, 5.520078110, 8.653727913, 11.79153444, 14.93091771, 18.07106397};
+  Kernel k{1.0 - g1, {}, {}};
+  double sum = 0.0;
+  for (const double a : kZeros) {
+    k.weight.push_back(4.0 / (a * a));
+    k.tau.push_back(size * size / (a * a * diffusivity));
+    sum += k.weight.back();
+  }
+  for (double& w : k.weight) w *= g1 / sum;
+  return k;
+}
+
+void relax(const Kernel& k, const Eigen::VectorXd& time, Eigen::Ref<Eigen::VectorXd> f) {
+  // what was applied before the record is taken to have been applied at its first sample
+  std::vector<double> h(k.tau.size());
+  for (std::size_t i = 0; i < h.size(); ++i) h[i] = k.weight[i] * f[0];
+  double before = f[0];
+  Step step;
+  for (Eigen::Index n = 1; n < f.size(); ++n) {
+    step.set(k, time[n] - time[n - 1]);
+    const double rise = f[n] - before;
+    before = f[n];
+    double sum = k.rest * f[n];
+    for (std::size_t i = 0; i < h.size(); ++i) {
+      h[i] = step.decay[i] * h[i] + k.weight[i] * step.mean[i] * rise;
+      sum += h[i];
+    }
+    f[n] = sum;
+  }
+}
+
+void creep(const Kernel& k, const Eigen::VectorXd& time, Eigen::Ref<Eigen::VectorXd> f) {
+  std::vector<double> h(k.tau.size());
+  for (std::size_t i = 0; i < h.size(); ++i) h[i] = k.weight[i] * f[0];
+  double before = f[0];
+  Step step;
+  for (Eigen::Index n = 1; n < f.size(); ++n) {
+    step.set(k, time[n] - time[n - 1]);
+    double known = 0.0, slope = k.rest;
+    for (std::size_t i = 0; i < h.size(); ++i) {
+      known += step.decay[i] * h[i] - k.weight[i] * step.mean[i] * before;
+      slope += k.weight[i] * step.mean[i];
+    }
+    const double elastic = (f[n] - known) / slope;
+    for (std::size_t i = 0; i < h.size(); ++i) h[i] = step.decay[i] * h[i] + k.weight[i] * step.mean[i] * (elastic - before);
+    before = elastic;
+    f[n] = elastic;
+  }
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,103 @@
+#pragma once
+// What is simulated: a rig with its baseline and any set of effects, each in one of its functional forms. An effect that is off
+// takes no part in the arithmetic, so the baseline is reproduced bit for bit.
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+
+#include "reconcile/dataset.h"
+
+namespace filum::reconcile {
+
+struct ParamSpec {
+  std::string name, unit;
+  double low = 0.0, high = 1.0;   // [SI]
+  bool logarithmic = false;       // fitted as its logarithm
+  int times_baseline = -1;        // the reported value is this times a baseline parameter (by index); -1: as it is
+};
+
+/// One functional form of an effect, with the points from which a fit may start.
+struct Form {
+  Effect effect;
+  int kind = 0;
+  std::string text;                                // the form in words or as a formula
+  std::vector<ParamSpec> params;
+  std::vector<std::vector<double>> starts;
+  bool line = false;                               // adds sine and cosine columns of free phase to every record
+};
+
+/// Values of one evaluation; null where an effect is off.
+struct Setting {
+  std::array<const double*, kEffects> p{};
+  std::array<int, kEffects> kind{};
+  const double* base = nullptr;
+  double scale = 1.0;   // of this specimen's stiffness (friction coefficient, gain) against the batch
+  double gain = 1.0;    // of this record's output
+
+  const double* on(Effect e) const { return p[static_cast<std::size_t>(index_of(e))]; }
+  int form(Effect e) const { return kind[static_cast<std::size_t>(index_of(e))]; }
+};
+
+class RigModel {
+ public:
+  explicit RigModel(const Dataset& d) : data_(d) {}
+  virtual ~RigModel() = default;
+
+  const Dataset& data() const { return data_; }
+  /// All parameters of the baseline, free or not, in the order of the catalogue.
+  const std::vector<ParameterInfo>& baseline() const { return info(data_.rig).baseline; }
+  /// A first guess of the baseline from the data.
+  virtual std::vector<double> guess() const = 0;
+  /// Forms of the effects that belong to the rig itself (those of the sensors are common to all).
+  virtual std::vector<Form> forms() const = 0;
+  /// True outputs of a trial, samples x outputs, before the sensor.
+  virtual void rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const = 0;
+  /// Whether stiffness differs from record to record, and whether the gain of the output is a nuisance of its own.
+  virtual bool has_scale() const { return true; }
+  virtual bool has_gain() const { return false; }
+  /// Samples that are left out (beside an event whose instant no model can predict to the sample).
+  virtual bool masked(const Trial&, int /*sample*/, int /*output*/) const { return false; }
+  /// False for a baseline parameter that is read off the records' events rather than fitted; measured() then gives its value and spread.
+  virtual bool fitted(int /*parameter*/) const { return true; }
+  struct Measured {
+    double value, low, high;
+  };
+  virtual Measured measured(int /*parameter*/, const std::vector<double>& base, const std::vector<double>& /*scale of each trial*/) const {
+    return {base[0], base[0], base[0]};
+  }
+  /// Order of the polynomial in time that every record may have, -1: none.
+  virtual int free_polynomial() const { return -1; }
+
+  /// rig(), then the sensor.
+  void simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const;
+  /// Forms of the rig and of the sensor.
+  std::vector<Form> all_forms() const;
+  /// Columns whose amplitudes are free in every record and output: polynomial and lines. samples x columns.
+  Eigen::MatrixXd free_columns(const Trial& t, const Setting& s) const;
+
+  /// Largest minus smallest value of an output over all trials.
+  double full_scale(const std::string& output) const;
+  double session_start() const;  // [s]
+
+ private:
+  std::vector<Form> sensor_forms() const;
+  const Dataset& data_;
+};
+
+std::unique_ptr<RigModel> make_model(const Dataset& d);
+
+// One constructor for each rig.
+std::unique_ptr<RigModel> make_tissue(const Dataset& d);      // tissue-block, spatula-press
+std::unique_ptr<RigModel> make_vessel(const Dataset& d);
+std::unique_ptr<RigModel> make_cantilever(const Dataset& d);
+std::unique_ptr<RigModel> make_capstan(const Dataset& d);
+std::unique_ptr<RigModel> make_needle(const Dataset& d);
+std::unique_ptr<RigModel> make_forceps(const Dataset& d);
+std::unique_ptr<RigModel> make_hold(const Dataset& d);
+
+/// Grid of starting points: every combination.
+std::vector<std::vector<double>> grid(const std::vector<std::vector<double>>& axes);
+double median(std::vector<double> v);
+
+}  // namespace filum::reconcile

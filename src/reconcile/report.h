@@ -1,0 +1,19 @@
+#pragma once
+// report.json (contract experiments.md), report.html (self-contained, inline SVG) and model.yaml. Each file appears whole or not
+// at all: it is written beside its place and renamed.
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "reconcile/result.h"
+
+namespace filum::reconcile {
+
+nlohmann::ordered_json report_json(const Dataset& d, const Result& r);
+std::string report_html(const Dataset& d, const Result& r, const std::string& program);
+std::string model_yaml(const Dataset& d, const Result& r, const std::string& program);
+
+/// Writes all files of a result into a folder, made if need be.
+void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program);
+void write_whole(const std::string& path, const std::string& text);
+
+}  // namespace filum::reconcile

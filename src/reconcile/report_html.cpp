@@ -1,0 +1,185 @@
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <sstream>
+
+#include "reconcile/plot.h"
+#include "reconcile/report.h"
+
+namespace filum::reconcile {
+namespace {
+
+std::string number(double v, int digits = 4) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, v);
+  return std::isfinite(v) ? text : "-";
+}
+
+std::string names(const std::vector<Effect>& effects) {
+  std::string out;
+  for (const Effect e : effects) out += (out.empty() ? "" : " + ") + info(e).name;
+  return out.empty() ? "none" : out;
+}
+
+std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
+  std::string out = "<tr>";
+  for (const std::string& c : cells) out += std::string("<") + tag + ">" + escaped(c) + "</" + tag + ">";
+  return out + "</tr>\n";
+}
+
+std::string interval(const Estimate& e) { return number(e.value) + " " + e.unit + " (" + number(e.low) + " to " + number(e.high) + ")"; }
+
+std::string unit_of(const Dataset& d, const std::string& channel) {
+  for (const ChannelInfo& k : info(d.rig).channels)
+    if (k.name == channel) return k.unit;
+  return "m";
+}
+
+void curves(const Dataset& d, const Result& r, std::ostringstream& s) {
+  s << "<h2>Measured, before and after</h2><p>Grey: measured; blue: the baseline, refitted; red: with what the verdict names. Each record keeps its own stiffness.</p><div class='plots'>";
+  int drawn = 0;
+  for (std::size_t i = 0; i < d.trials.size() && drawn < 12; ++i) {
+    if (i >= r.before.predicted.size() || r.before.predicted[i].empty()) continue;
+    const Trial& t = d.trials[i];
+    for (std::size_t c = 0; c < d.outputs.size() && drawn < 12; ++c, ++drawn) {
+      std::vector<Curve> lines = {{t.time, t.at(d.outputs[c]), "#999", true}, {t.time, r.before.predicted[i][c], "#26c", false}};
+      if (i < r.after.predicted.size() && !r.after.predicted[i].empty()) lines.push_back({t.time, r.after.predicted[i][c], "#c22", false});
+      s << plot({t.file, t.clocked ? "time [s]" : "sample", d.outputs[c] + " [" + unit_of(d, d.outputs[c]) + "]"}, lines);
+    }
+  }
+  s << "</div>\n";
+}
+
+/// Mean residual of a stretch of a record over its standard error, before.
+void heat(const Dataset& d, const Result& r, std::ostringstream& s) {
+  std::vector<std::string> rows;
+  std::vector<std::vector<double>> cells;
+  for (std::size_t i = 0; i < r.before.residual.size(); ++i)
+    for (std::size_t c = 0; c < r.before.residual[i].size(); ++c) {
+      const Eigen::VectorXd& v = r.before.residual[i][c];
+      const Eigen::Index n = 40, w = std::max<Eigen::Index>(1, v.size() / n);
+      rows.push_back(d.trials[i].file + " " + d.outputs[c]);
+      cells.emplace_back();
+      for (Eigen::Index k = 0; k + w <= v.size(); k += w) {
+        double sum = 0;
+        int m = 0;
+        for (Eigen::Index j = k; j < k + w; ++j)
+          if (std::isfinite(v[j])) sum += v[j], ++m;
+        cells.back().push_back(m > 0 ? std::abs(sum / m) / r.noise.output[c].sigma * std::sqrt(static_cast<double>(m)) : 0.0);
+      }
+    }
+  if (rows.empty()) return;
+  s << "<h2>Where the baseline misses</h2><p>Mean residual of each fortieth of a record in standard errors; dark is 8 or more. Time runs to the right.</p>" << heat_map(rows, cells, 8.0);
+  if (r.where.empty()) return;
+  s << "<table>" << row({"record", "phase", "range", "share of the excess"}, "th");
+  for (std::size_t i = 0; i < r.where.size() && i < 8; ++i) s << row({r.where[i].trial, r.where[i].phase, r.where[i].range, number(100 * r.where[i].share, 3) + " %"});
+  s << "</table>\n";
+}
+
+void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
+  s << "<h2>Gap</h2><p>Root-mean-square residual over the noise's standard deviation; 1 is perfect.</p><table>" << row({"", "before", "after"}, "th")
+    << row({"fitted trials", number(r.fit.before, 3), number(r.fit.after, 3)}) << row({"held out (" + r.held_out_how + ")", number(r.held_out.before, 3), number(r.held_out.after, 3)}) << "</table><table>"
+    << row({"output", "noise, 1 sd", "from", "correlation of neighbours", "full scale"}, "th");
+  for (std::size_t c = 0; c < r.noise.output.size(); ++c) {
+    const OutputNoise& o = r.noise.output[c];
+    s << row({d.outputs[c], number(o.sigma) + " " + unit_of(d, d.outputs[c]), o.from, number(o.rho, 2), number(o.full_scale)});
+  }
+  s << "</table><p>Records of one batch differ in stiffness by " << number(100 * r.noise.scatter, 2) << " % (1 sd). Structure left in the residual: " << number(r.structure_before, 3) << " standard deviations before, "
+    << number(r.structure_after, 3) << " after. Overdispersion used for all comparisons: " << number(r.dispersion, 3) << ".</p>\n<h2>Parameters</h2><table>" << row({"parameter", "baseline alone", "with the effect"}, "th");
+  for (const Estimate& e : r.baseline_alone) {
+    std::string after = "-";
+    for (const Estimate& a : r.baseline)
+      if (a.name == e.name) after = interval(a);
+    s << row({e.name, interval(e), after});
+  }
+  if (r.verdict == "effect")
+    for (const NamedEffect& e : r.effects)
+      for (const Estimate& p : e.parameters) s << row({info(e.effect).name + ": " + p.name, "-", interval(p)});
+  s << "</table><p>Intervals are 95 %.</p>\n<h2>Everything that was tried</h2><table>" << row({"effects", "form", "evidence", "explains", "why not"}, "th");
+  for (const Tried& t : r.tried) s << row({names(t.effects), t.form, number(-t.evidence, 4), number(100 * t.explained, 3) + " %", t.why});
+  s << "</table><p>Evidence: fall of the Bayesian information criterion against the baseline; a difference below " << number(r.rules.tie) << " is a tie.</p>\n";
+}
+
+void residual_after(const Dataset& d, const Result& r, std::ostringstream& s) {
+  for (std::size_t i = 0; i < r.after.residual.size(); ++i) {
+    if (r.after.residual[i].empty()) continue;
+    const Eigen::VectorXd& v = r.after.residual[i][0];
+    const Eigen::Index lags = std::min<Eigen::Index>(60, v.size() / 4);
+    Eigen::VectorXd x(lags), a(lags);
+    const auto product = [&](Eigen::Index lag) {
+      double sum = 0;
+      for (Eigen::Index k = lag; k < v.size(); ++k)
+        if (std::isfinite(v[k]) && std::isfinite(v[k - lag])) sum += v[k] * v[k - lag];
+      return sum;
+    };
+    const double zero = product(0);
+    for (Eigen::Index k = 0; k < lags; ++k) x[k] = static_cast<double>(k), a[k] = zero > 0 ? product(k) / zero : 0.0;
+    const Eigen::Index bins = std::min<Eigen::Index>(200, v.size() / 2 - 1);
+    Eigen::VectorXd f(bins), p(bins);
+    const double span = d.trials[i].time[v.size() - 1] - d.trials[i].time[0];
+    for (Eigen::Index k = 0; k < bins; ++k) {
+      double re = 0, im = 0;
+      for (Eigen::Index n = 0; n < v.size(); ++n) {
+        if (!std::isfinite(v[n])) continue;
+        const double phase = 2 * std::numbers::pi * static_cast<double>((k + 1) * n) / static_cast<double>(v.size());
+        re += v[n] * std::cos(phase);
+        im += v[n] * std::sin(phase);
+      }
+      f[k] = static_cast<double>(k + 1) / span;
+      p[k] = std::log10(std::max((re * re + im * im) / static_cast<double>(v.size()), 1e-300));
+    }
+    s << "<h2>What is left afterwards</h2><div class='plots'>" << plot({"autocorrelation, " + d.trials[i].file, "lag [samples]", "correlation"}, {{x, a, "#444", false}})
+      << plot({"spectrum, " + d.trials[i].file, "frequency [Hz]", "log10 power"}, {{f, p, "#444", false}}) << "</div>\n";
+    return;
+  }
+}
+
+void closing(const Dataset& d, const Result& r, const std::string& program, std::ostringstream& s) {
+  if (!r.shape.empty()) {
+    s << "<h2>Shape of what is not explained</h2><p>Sparse regression of the residual, in parts of full scale, on terms scaled to 1; stability is the share of 30 resamplings that chose the term.</p><table>" << row({"term", "coefficient", "stability"}, "th");
+    for (const Term& t : r.shape) s << row({t.name, number(t.coefficient, 3), number(t.stability, 2)});
+    s << "</table>\n";
+  }
+  if (r.verdict == "ambiguous") s << "<h2>Rivals</h2><p>" << r.rivals.size() << " sets explain the records equally well; the signatures of the first two correlate by " << number(r.correlation, 3) << ".</p>\n";
+  if (r.next) s << "<h2>Next experiment</h2><p>" << escaped(r.next->protocol) << ": " << escaped(r.next->why) << ". It would decide in " << number(100 * r.next->chance, 3) << " % of 50 simulated repetitions.</p>\n";
+  s << "<h2>Not testable with these trials</h2><table>" << row({"effect", "why", "what would show it"}, "th");
+  for (const NotTestable& n : r.not_testable) s << row({info(n.effect).name, n.why, n.needs});
+  s << "</table>\n<h2>Rules</h2><table>" << row({"rule", "value"}, "th");
+  const Rules& k = r.rules;
+  for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"material change, share of full scale", k.materiality}, {"the same in an eighth of a record", k.window_materiality},
+       {"fall of chi-squared to detect", k.detect}, {"residual structure that proves a gap, sd", k.structure}, {"fall of BIC to accept", k.accept_evidence}, {"share of the gap to be explained", k.explained},
+       {"the same on held-out protocols", k.held_out}, {"tie, BIC", k.tie}, {"a further effect: BIC", k.pair_evidence}, {"a further effect: share", k.pair_share}, {"masked share that hides an effect", k.masked}})
+    s << row({name, number(value)});
+  s << "</table>\n";
+  if (!d.notices.empty()) {
+    s << "<h2>Notices</h2><ul>";
+    for (const std::string& n : d.notices) s << "<li>" << escaped(n) << "</li>";
+    s << "</ul>";
+  }
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(d.hash));
+  s << "<p class='small'>" << escaped(program) << "; data " << hash << "; " << number(r.seconds, 3) << " s. Trials marked hold_out were used for the held-out gap only. A name means: the measurements behave as this law says, under these protocols.</p>";
+}
+
+}  // namespace
+
+std::string report_html(const Dataset& d, const Result& r, const std::string& program) {
+  std::ostringstream s;
+  s << "<!doctype html><html lang='en'><meta charset='utf-8'><meta name='viewport' content='width=device-width'><title>" << escaped(d.title) << "</title><style>"
+    << "body{font:16px/1.5 Georgia,serif;max-width:52rem;margin:2rem auto;padding:0 1rem;color:#222}h1{font-size:1.6rem}h2{font-size:1.15rem;margin-top:2rem}table{border-collapse:collapse;font-size:.9rem;margin:.6rem 0}"
+    << "td,th{border-bottom:1px solid #ddd;padding:.2rem .7rem .2rem 0;text-align:left;vertical-align:top}.verdict{border-left:4px solid #c22;padding:.4rem 1rem;background:#faf6f4}.small,svg text{font:11px sans-serif}"
+    << ".plots{display:flex;flex-wrap:wrap;gap:.5rem}svg{max-width:100%}</style>\n<h1>" << escaped(d.title) << "</h1><p>" << info(d.rig).name << ", " << d.trials.size() << " trials, model " << escaped(d.model)
+    << (d.source.empty() ? "" : "; source: " + escaped(d.source)) << "</p>\n<p class='verdict'><b>" << r.verdict << (r.partial ? ", partial" : "") << ".</b> ";
+  if (r.verdict == "effect")
+    for (const NamedEffect& e : r.effects) s << "<b>" << info(e.effect).name << "</b> (" << escaped(info(e.effect).law) << "; form: " << escaped(e.form) << "). ";
+  s << escaped(r.sentence) << "</p>\n";
+  curves(d, r, s);
+  heat(d, r, s);
+  tables(d, r, s);
+  residual_after(d, r, s);
+  closing(d, r, program, s);
+  s << "</html>\n";
+  return s.str();
+}
+
+}  // namespace filum::reconcile

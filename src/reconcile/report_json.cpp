@@ -1,0 +1,156 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "reconcile/report.h"
+
+namespace filum::reconcile {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite(double v) { return std::isfinite(v) ? Json(v) : Json(nullptr); }
+
+Json json_of(const Estimate& e) { return {{"value", finite(e.value)}, {"unit", e.unit}, {"low", finite(e.low)}, {"high", finite(e.high)}}; }
+
+Json json_of(const std::vector<Estimate>& all) {
+  Json out = Json::object();
+  for (const Estimate& e : all) out[e.name] = json_of(e);
+  return out;
+}
+
+Json names(const std::vector<Effect>& effects) {
+  Json out = Json::array();
+  for (const Effect e : effects) out.push_back(info(e).name);
+  return out;
+}
+
+/// Evidence against the best set: 0 for the best, the more negative the worse.
+Json rivals_json(const Result& r) {
+  double best = 0.0;
+  for (const Tried& t : r.tried) best = std::min(best, t.evidence);
+  if (r.verdict == "ambiguous" && !r.rivals.empty()) best = r.rivals[0].evidence;
+  Json out = Json::array();
+  for (const Tried& t : r.rivals)
+    out.push_back({{"effects", names(t.effects)}, {"evidence", finite(best - t.evidence)}, {"form", t.form}, {"explained", finite(t.explained)}});
+  return out;
+}
+
+Json noise_json(const Dataset& d, const Result& r) {
+  Json out = Json::object();
+  for (std::size_t c = 0; c < d.outputs.size() && c < r.noise.output.size(); ++c) {
+    std::string unit = "-";
+    for (const ChannelInfo& k : info(d.rig).channels)
+      if (k.name == d.outputs[c]) unit = k.unit;
+    if (d.rig == Rig::spatula_press && d.outputs[c][0] == 'u') unit = "m";
+    const OutputNoise& o = r.noise.output[c];
+    out[d.outputs[c]] = {{"value", o.sigma}, {"unit", unit}, {"from", o.from}, {"autocorrelation", o.rho}};
+  }
+  return out;
+}
+
+}  // namespace
+
+Json report_json(const Dataset& d, const Result& r) {
+  Json j = {{"format", "filum-reconcile/1"}, {"dataset", d.name}, {"rig", info(d.rig).name}, {"verdict", r.verdict}};
+  Json effects = Json::array();
+  if (r.verdict == "effect")
+    for (const NamedEffect& e : r.effects) effects.push_back({{"name", info(e.effect).name}, {"form", e.form}, {"parameters", json_of(e.parameters)}});
+  j["effects"] = effects;
+  j["baseline"] = json_of(r.baseline.empty() ? r.baseline_alone : r.baseline);
+  j["rivals"] = rivals_json(r);
+  j["gap"] = {{"noise", noise_json(d, r)},
+              {"fit", {{"before", finite(r.fit.before)}, {"after", finite(r.fit.after)}}},
+              {"held_out", {{"before", finite(r.held_out.before)}, {"after", finite(r.held_out.after)}, {"how", r.held_out_how}}}};
+  Json where = Json::array();
+  for (std::size_t i = 0; i < r.where.size() && i < 12; ++i)
+    where.push_back({{"trial", r.where[i].trial}, {"phase", r.where[i].phase}, {"range", r.where[i].range}, {"share", finite(r.where[i].share)}});
+  j["where"] = where;
+  Json hidden = Json::array();
+  for (const NotTestable& n : r.not_testable) hidden.push_back({{"effect", info(n.effect).name}, {"why", n.why}, {"needs", n.needs}});
+  j["not_testable"] = hidden;
+  j["partial"] = r.partial;
+  j["next_experiment"] = nullptr;
+  if (r.next) j["next_experiment"] = {{"protocol", r.next->protocol}, {"why", r.next->why}, {"chance", r.next->chance}};
+  j["model_written"] = nullptr;
+  if (r.verdict == "effect") j["model_written"] = "model.yaml";
+  j["seconds"] = r.seconds;
+  j["sentence"] = r.sentence;
+  if (!r.shape.empty()) {
+    Json shape = Json::array();
+    for (const Term& t : r.shape) shape.push_back({{"term", t.name}, {"coefficient", finite(t.coefficient)}, {"stability", t.stability}});
+    j["shape"] = shape;
+  }
+  Json tried = Json::array();
+  for (const Tried& t : r.tried) tried.push_back({{"effects", names(t.effects)}, {"form", t.form}, {"evidence", finite(-t.evidence)}, {"explained", finite(t.explained)}, {"why", t.why}});
+  j["tried"] = tried;
+  j["notices"] = d.notices;
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(d.hash));
+  j["dataset_hash"] = hash;
+  return j;
+}
+
+std::string model_yaml(const Dataset& d, const Result& r, const std::string& program) {
+  std::ostringstream s;
+  const auto value = [&](const Estimate& e, const std::string& indent) {
+    const std::string unit = e.unit == "-" ? "" : " " + e.unit;
+    char text[240];
+    std::snprintf(text, sizeof text, "{ value: \"%.6g%s\", low: \"%.6g%s\", high: \"%.6g%s\" }", e.value, unit.c_str(), e.low, unit.c_str(), e.high, unit.c_str());
+    s << indent << e.name << ": " << text << "\n";
+  };
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(d.hash));
+  s << "# Baseline with what the measurements showed to be missing. Values with their 95 % intervals.\n"
+    << "format: filum-model/1\ntitle: \"" << d.name << "\"\nrig: " << info(d.rig).name << "\nbaseline_model: " << d.model << "\nbaseline:\n";
+  for (const Estimate& e : r.baseline) value(e, "  ");
+  if (r.baseline.empty()) s << "  {}\n";
+  s << "effects:\n";
+  for (const NamedEffect& e : r.effects) {
+    s << "  - name: " << info(e.effect).name << "\n    form: \"" << e.form << "\"\n    parameters:\n";
+    for (const Estimate& p : e.parameters) value(p, "      ");
+  }
+  s << "partial: " << (r.partial ? "true" : "false") << "\nvalid_for:\n";
+  for (const Channel& c : d.channels) {
+    if (!c.input) continue;
+    double low = INFINITY, high = -INFINITY;
+    for (const Trial& t : d.trials) {
+      const Eigen::VectorXd& v = c.name == "time" ? t.time : t.at(c.name);
+      low = std::min(low, v.minCoeff());
+      high = std::max(high, v.maxCoeff());
+    }
+    std::string unit;
+    for (const ChannelInfo& k : info(d.rig).channels)
+      if (k.name == c.name && k.unit != "-") unit = " " + k.unit;
+    char text[160];
+    std::snprintf(text, sizeof text, "  %s: [\"%.6g%s\", \"%.6g%s\"]\n", c.name.c_str(), low, unit.c_str(), high, unit.c_str());
+    s << text;
+  }
+  s << "source: { dataset: \"" << d.name << "\", hash: \"" << hash << "\", program: \"" << program << "\" }\n";
+  return s.str();
+}
+
+void write_whole(const std::string& path, const std::string& text) {
+  const std::string beside = path + ".part";
+  {
+    std::ofstream file(beside, std::ios::binary);
+    file << text;
+    file.flush();
+    if (!file) throw std::runtime_error(path + " cannot be written");
+  }
+  std::filesystem::rename(beside, path);
+}
+
+void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program) {
+  std::filesystem::create_directories(folder);
+  write_whole(folder + "/report.html", report_html(d, r, program));
+  if (r.verdict == "effect") write_whole(folder + "/model.yaml", model_yaml(d, r, program));
+  else std::filesystem::remove(folder + "/model.yaml");
+  // last, since its presence says that the report is whole
+  write_whole(folder + "/report.json", report_json(d, r).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,93 @@
+#pragma once
+// What a reconciliation found; written as report.json (contract), report.html and model.yaml.
+
+#include <optional>
+
+#include "reconcile/dataset.h"
+#include "reconcile/fit.h"
+#include "reconcile/rules.h"
+#include "reconcile/screen.h"
+
+namespace filum::reconcile {
+
+struct Estimate {
+  std::string name, unit;
+  double value = 0.0, low = 0.0, high = 0.0;  // [SI], 95 %
+};
+
+struct NamedEffect {
+  Effect effect;
+  std::string form;
+  std::vector<Estimate> parameters;
+};
+
+/// One set of effects that was fitted, with why it was not taken.
+struct Tried {
+  std::vector<Effect> effects;
+  std::string form;
+  double evidence = 0.0;   // BIC less that of the baseline: the lower the better
+  double explained = 0.0;  // share of what the baseline leaves
+  bool taken = false;
+  std::string why;
+};
+
+struct Cell {
+  std::string trial, phase, range;
+  double share = 0.0;
+};
+
+struct Gap {
+  double before = 0.0, after = 0.0;  // rms residual over the noise's standard deviation
+};
+
+struct NextExperiment {
+  std::string protocol, why;
+  double chance = 0.0;  // of telling the rivals apart, of 50 simulated repetitions
+};
+
+struct Term {
+  std::string name;
+  double coefficient = 0.0, stability = 0.0;
+};
+
+struct Result {
+  std::string verdict;  // agree, parameter, effect, ambiguous, unknown
+  std::string sentence; // the verdict in words and what would change it
+  bool partial = false;
+  std::vector<NamedEffect> effects;
+  std::vector<Estimate> baseline, baseline_alone;
+  std::vector<Tried> rivals, tried;
+  Noise noise;
+  Gap fit, held_out;
+  std::string held_out_how;
+  std::vector<Cell> where;
+  std::vector<NotTestable> not_testable;
+  std::optional<NextExperiment> next;
+  std::vector<Term> shape;          // of an unknown effect: residual = sum coefficient * term, in units of full scale
+  double dispersion = 1.0, structure_before = 0.0, structure_after = 0.0;
+  double correlation = 0.0;         // of the signatures of the first two rivals
+  Fit before, after;                // for the plots
+  std::vector<Form> forms;          // owned here, since fits point to them
+  Rules rules;
+  double seconds = 0.0;
+};
+
+struct Options {
+  Rules rules;
+  int threads = 2;
+  std::function<void(const std::string& stage, double share)> progress;  // may be empty
+};
+
+Result reconcile(const Dataset& d, const Options& options = {});
+/// tip-hold has no input: its effects are told apart in the spectrum.
+Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& options);
+
+// Parts, each usable alone.
+std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& noise);
+Gap gap_of(const RigModel& model, const Noise& noise, const Fit& before, const Fit& after, const std::vector<bool>& trials);
+std::vector<Term> describe(const RigModel& model, const Fit& base);
+std::optional<NextExperiment> next_experiment(const Fitter& fitter, const Fit& a, const Fit& b);
+std::vector<Estimate> baseline_estimates(const Fitter& fitter, const Fit& fit, double dispersion);
+std::vector<NamedEffect> effect_estimates(const Fitter& fitter, const Fit& fit, double dispersion);
+
+}  // namespace filum::reconcile

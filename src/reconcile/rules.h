@@ -1,0 +1,27 @@
+#pragma once
+// Every number by which reconcile decides, in one place; printed in each report. Defaults follow reference/discovery.md 4.3;
+// what was changed on the development half is said beside it.
+
+namespace filum::reconcile {
+
+struct Rules {
+  double materiality = 0.006;        // of full scale: smaller changes of the prediction (rms of a record) are not worth a name
+  double window_materiality = 0.02;  // the same in an eighth of a record (short events)
+  double detect = 18.0;              // fall of chi2 (over the overdispersion) that the best effect must bring
+  double structure = 7.0;            // standard deviations of the residual's block sums that show that something is missing
+  double accept_evidence = 10.0;     // fall of BIC against the baseline
+  double explained = 0.70;           // share of the structure that a name must explain
+  double held_out = 0.50;            // the same on protocols that were not fitted
+  double tie = 6.0;                  // rivals nearer than this in BIC are not told apart
+  double pair_evidence = 12.0;       // fall of BIC that a further effect must bring
+  double pair_share = 0.05;          // of the structure that a further effect must explain
+  double partial_structure = 6.0;    // standard deviations left, and
+  double partial_share = 0.04;       // share left, both above: "partial"
+  int most_effects = 3;
+  double masked = 0.97;              // share of a signature that the baseline's refit swallows: not testable
+  double testable = 16.0;            // squared signal to noise (noise 1 % of full scale) below which an effect cannot be seen
+  double screen_share = 0.20;        // of the best score: effects below are not fitted
+  int screen_most = 8;
+};
+
+}  // namespace filum::reconcile

@@ -1,0 +1,189 @@
+#include "reconcile/screen.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace filum::reconcile {
+
+Screen::Screen(const Fitter& fitter, const Fit& fit) : fitter_(fitter), fit_(fit) {
+  const auto g = fitter.globals(fit.forms);
+  const auto ng = static_cast<Eigen::Index>(g.size());
+  const int own = fitter.own_parameters();
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(ng, ng), J;
+  for (std::size_t i = 0; i < fitter.use.size(); ++i) {
+    if (!fitter.use[i]) continue;
+    trials_.push_back(static_cast<int>(i));
+    r_.push_back(fitter.residual(static_cast<int>(i), fitter.setting(fit, static_cast<int>(i))));
+    fitter.linearise(fit, g, static_cast<int>(i), r_.back(), J);
+    G_.push_back(J.leftCols(ng));
+    N_.push_back(J.rightCols(own));
+    Eigen::MatrixXd D = N_.back().transpose() * N_.back();
+    int k = 0;
+    if (fitter.model().has_scale()) D(k, k) += 1.0 / std::pow(fitter.noise().scatter, 2), ++k;
+    if (fitter.model().has_gain()) D(k, k) += 1.0 / std::pow(fitter.noise().gain_scatter, 2);
+    D_.push_back(own > 0 ? D.ldlt().solve(Eigen::MatrixXd::Identity(own, own)).eval() : D);
+    C_.push_back(G_.back().transpose() * N_.back());
+    A.noalias() += G_.back().transpose() * G_.back();
+    if (own > 0) A.noalias() -= C_.back() * D_.back() * C_.back().transpose();
+  }
+  for (Eigen::Index k = 0; k < ng; ++k) A(k, k) += 1e-9 * std::max(A(k, k), 1e-12) + 1e-300;
+  S_ = ng > 0 ? A.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : A;
+}
+
+Screen::Signature Screen::signature(const Form& form, const std::vector<double>& start) const {
+  Signature out;
+  Fit with = fit_;
+  with.forms.push_back(&form);
+  with.params.push_back(start);
+  out.g = Eigen::VectorXd::Zero(S_.rows());
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    Eigen::VectorXd s = fitter_.residual(trials_[i], fitter_.setting(with, trials_[i])) - r_[i];
+    if (!s.allFinite()) s.setZero();
+    Eigen::VectorXd n = N_[i].transpose() * s;
+    out.g += G_[i].transpose() * s;
+    if (n.size() > 0) out.g -= C_[i] * (D_[i] * n);
+    out.norm += s.squaredNorm();
+    out.n.push_back(std::move(n));
+    out.s.push_back(std::move(s));
+  }
+  return out;
+}
+
+double Screen::inner(const Signature& a, const Signature& b) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    sum += a.s[i].dot(b.s[i]);
+    if (a.n[i].size() > 0) sum -= a.n[i].dot(D_[i] * b.n[i]);
+  }
+  return a.g.size() > 0 ? sum - a.g.dot(S_ * b.g) : sum;
+}
+
+Score Screen::score(const Form& form, const std::vector<double>& start) const {
+  Score out{&form, start, 0.0, 0.0, 0.0, 1.0};
+  const Signature s = signature(form, start);
+  out.seen = std::max(0.0, inner(s, s));
+  if (s.norm <= 0.0 || out.seen <= 1e-9 * s.norm) return out;
+  out.masked = 1.0 - out.seen / s.norm;
+  // at the optimum the residual is orthogonal to what is fitted, so no projection of it is needed
+  double along = 0.0;
+  for (std::size_t i = 0; i < trials_.size(); ++i) along += s.s[i].dot(r_[i]);
+  if (!S_.isZero(0.0) || !D_.empty()) {
+    Signature r;
+    r.g = Eigen::VectorXd::Zero(S_.rows());
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      Eigen::VectorXd n = N_[i].transpose() * r_[i];
+      const auto t = static_cast<std::size_t>(trials_[i]);
+      int k = 0;
+      if (fitter_.model().has_scale()) n[k++] += fit_.log_scale[t] / std::pow(fitter_.noise().scatter, 2);
+      if (fitter_.model().has_gain()) n[k] += fit_.log_gain[t] / std::pow(fitter_.noise().gain_scatter, 2);
+      r.g += G_[i].transpose() * r_[i];
+      if (n.size() > 0) r.g -= C_[i] * (D_[i] * n), along -= s.n[i].dot(D_[i] * n);
+    }
+    if (r.g.size() > 0) along -= s.g.dot(S_ * r.g);
+  }
+  out.amplitude = -along / out.seen;
+  const bool either_sign = !form.params.empty() && form.params[0].low < 0.0 && form.params[0].high > 0.0;
+  if (out.amplitude > 0.0 || either_sign) out.gain = along * along / out.seen;
+  if (out.amplitude > 4.0) out.gain *= 0.7;  // far from the start: the promise is less sure
+  return out;
+}
+
+std::vector<Score> Screen::all(const std::vector<Form>& forms) const {
+  std::vector<Score> out;
+  for (const Form& f : forms) {
+    if (f.line) continue;
+    if (std::any_of(fit_.forms.begin(), fit_.forms.end(), [&](const Form* g) { return g->effect == f.effect; })) continue;
+    for (const auto& start : f.starts) out.push_back(score(f, start));
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
+  return out;
+}
+
+double Screen::correlation(const Form& a, const std::vector<double>& pa, const Form& b, const std::vector<double>& pb) const {
+  const Signature x = signature(a, pa), y = signature(b, pb);
+  const double xx = inner(x, x), yy = inner(y, y);
+  return xx > 0 && yy > 0 ? inner(x, y) / std::sqrt(xx * yy) : 0.0;
+}
+
+namespace {
+
+/// Reasons that follow from the list of trials.
+std::string missing_condition(const Dataset& d, Effect e) {
+  std::set<std::string> modes, sides;
+  std::set<double> lateral, aspect;
+  for (const Trial& t : d.trials) {
+    modes.insert(t.word("mode"));
+    sides.insert(t.word("orientation"));
+    const double width = d.rig == Rig::spatula_press ? t.size("blade_width") : t.size("diameter", t.size("width"));
+    lateral.insert(std::round(1e6 * width) + 1e6 * std::round(1e6 * t.size("height")));
+    aspect.insert(std::round(1e3 * width / std::max(t.size("height"), 1e-9)));
+  }
+  switch (e) {
+    case Effect::tension_compression_asymmetry:
+      return modes.count("compression") && modes.count("tension") ? "" : "not both tension and compression";
+    case Effect::platen_friction: return aspect.size() > 1 ? "" : "one width-to-height ratio only: friction looks like a higher modulus";
+    case Effect::poroelastic_drainage: return lateral.size() > 1 ? "" : "one specimen size only: drainage looks like relaxation";
+    case Effect::rest_curvature: return sides.size() > 1 ? "" : "one orientation only: curvature looks like a different weight";
+    default: return "";
+  }
+}
+
+std::string clock_condition(const Dataset& d, Effect e) {
+  double rate = 1e300, span = 0.0;
+  for (const Trial& t : d.trials) {
+    if (!t.clocked) return "no time channel";
+    const double length = t.time[t.samples() - 1] - t.time[0];
+    rate = std::min(rate, (t.samples() - 1) / length);
+    span = std::max(span, length);
+  }
+  if (e == Effect::pulsation && (rate < 1.0 || span < 3.0)) return "records too short or sampled too slowly for a heart beat";
+  if (e == Effect::physiological_tremor && rate < 17.0) return "sampled more slowly than twice 8 Hz";
+  if (e == Effect::mains_hum && span * rate < 24.0) return "too few samples";
+  return "";
+}
+
+}  // namespace
+
+std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& forms, double masked, double testable) {
+  const Dataset& d = model.data();
+  Noise noise;
+  for (const std::string& name : d.outputs) {
+    const double fs = model.full_scale(name);
+    noise.output.push_back({0.01 * fs, 0.0, fs, ""});
+  }
+  Fitter fitter(model, noise);
+  Fit base;
+  base.base = model.guess();
+  base.log_scale.assign(d.trials.size(), 0.0);
+  base.log_gain.assign(d.trials.size(), 0.0);
+  const Screen screen(fitter, base);
+  std::map<Effect, Score> best;
+  std::set<Effect> lines;
+  for (const Form& f : forms) {
+    if (f.line) lines.insert(f.effect);
+    for (const auto& start : f.starts) {
+      const Score s = screen.score(f, start);
+      if (auto at = best.find(f.effect); at == best.end() || s.seen > at->second.seen) best[f.effect] = s;
+    }
+  }
+  std::vector<NotTestable> out;
+  for (const Effect e : effects_of(d.rig)) {
+    std::string why = missing_condition(d, e);
+    const bool line = lines.count(e) > 0 || e == Effect::physiological_tremor;
+    if (line || e == Effect::sensor_lag || e == Effect::sensor_drift)
+      if (why.empty()) why = clock_condition(d, e);
+    if (why.empty() && !line) {
+      const auto at = best.find(e);
+      if (at == best.end()) why = "these trials never bring it about";
+      else if (at->second.masked > masked) why = "a change of the baseline's own parameters imitates it (masked to " + std::to_string(static_cast<int>(std::floor(1000 * at->second.masked)) / 10) + " %)";
+      else if (at->second.seen < testable) why = "even a strong effect would change these records by less than their noise";
+    }
+    if (!why.empty()) out.push_back({e, why, info(e).shows});
+  }
+  return out;
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,54 @@
+#pragma once
+// Score tests: what a further effect would do to the residual, with everything already fitted free to answer. The signature of an
+// effect is the change of the whitened residual when it is switched on at one of its starting points; its part orthogonal to the
+// present model (baseline, effects, records' own scales) is what the data can show of it (Rao 1948; Plumlee 2017).
+
+#include "reconcile/fit.h"
+
+namespace filum::reconcile {
+
+struct Score {
+  const Form* form = nullptr;
+  std::vector<double> start;
+  double gain = 0.0;       // fall of chi2 that the score test promises
+  double amplitude = 0.0;  // in units of the start
+  double seen = 0.0;       // squared norm of the orthogonal part
+  double masked = 1.0;     // share of the signature that the present model can imitate
+};
+
+class Screen {
+ public:
+  Screen(const Fitter& fitter, const Fit& fit);
+  Score score(const Form& form, const std::vector<double>& start) const;
+  /// Every form at every start that is not part of the fit, best first.
+  std::vector<Score> all(const std::vector<Form>& forms) const;
+  /// Correlation of the orthogonal parts of two signatures.
+  double correlation(const Form& a, const std::vector<double>& pa, const Form& b, const std::vector<double>& pb) const;
+
+ private:
+  struct Signature {
+    std::vector<Eigen::VectorXd> s;
+    Eigen::VectorXd g;
+    std::vector<Eigen::VectorXd> n;
+    double norm = 0.0;
+  };
+  Signature signature(const Form& form, const std::vector<double>& start) const;
+  double inner(const Signature& a, const Signature& b) const;
+
+  const Fitter& fitter_;
+  const Fit& fit_;
+  std::vector<int> trials_;
+  std::vector<Eigen::VectorXd> r_;
+  std::vector<Eigen::MatrixXd> G_, N_, C_, D_;  // D_ inverted
+  Eigen::MatrixXd S_;                           // inverted
+};
+
+struct NotTestable {
+  Effect effect;
+  std::string why, needs;
+};
+
+/// From the inputs alone: effects of the rig that these trials could not show. `full_scale_noise` is 1 % of full scale.
+std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& forms, double masked, double testable);
+
+}  // namespace filum::reconcile

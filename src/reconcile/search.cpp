@@ -1,0 +1,223 @@
+#include "reconcile/search.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+
+namespace filum::reconcile {
+namespace {
+
+std::set<Effect> set_of(const Fit& f) {
+  std::set<Effect> s;
+  for (const Form* form : f.forms) s.insert(form->effect);
+  return s;
+}
+
+Noise first_noise(const RigModel& model) {
+  Noise noise;
+  for (const std::string& name : model.data().outputs) {
+    const double fs = model.full_scale(name), stated = model.data().channel(name).noise;
+    noise.output.push_back({stated > 0 ? stated : 0.02 * fs, 0.0, fs, stated > 0 ? "stated" : "fast part"});
+  }
+  noise.scatter = 0.10;
+  return noise;
+}
+
+}  // namespace
+
+void parallel(int threads, std::size_t n, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next = 0;
+  std::exception_ptr failure;
+  std::mutex guard;
+  const auto loop = [&] {
+    for (std::size_t i = next++; i < n; i = next++) {
+      try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(guard);
+        failure = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> pool;
+  for (int i = 1; i < threads; ++i) pool.emplace_back(loop);
+  loop();
+  for (std::thread& t : pool) t.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+Search::Search(const RigModel& model, const std::vector<Form>& forms, const Options& options)
+    : model_(model), forms_(forms), options_(options), fitter_(model, first_noise(model)) {}
+
+void Search::fit_baseline() {
+  const auto start = model_.guess();
+  Fit loose = fitter_.fit({}, start, {});
+  Noise noise = estimate_noise(fitter_, loose);
+  fitter_.set_noise(noise);
+  loose = fitter_.fit({}, loose.base, {}, {}, &loose);
+  noise = estimate_noise(fitter_, loose);
+  noise.scatter = model_.data().rig == Rig::forceps_bridge ? 0.008 : replicate_scatter(model_.data(), loose);
+  fitter_.set_noise(noise);
+  base_ = fitter_.fit({}, loose.base, {}, {}, &loose);
+}
+
+std::vector<Score> Search::lines(const Fit& from) const {
+  std::vector<Score> out;
+  for (const Form& f : forms_) {
+    if (!f.line || std::any_of(from.forms.begin(), from.forms.end(), [&](const Form* g) { return g->effect == f.effect; })) continue;
+    std::vector<std::pair<double, double>> bands = {{f.params[0].low, f.params[0].high}};
+    if (f.effect == Effect::mains_hum) bands = {{49.4, 50.6}, {59.4, 60.6}};
+    for (const auto& [low, high] : bands) {
+      const Line line = strongest_line(fitter_, from, low, high);
+      const double expected = line.columns + 4.5 * std::sqrt(2.0 * line.columns) + 12.0;
+      if (line.gain > expected) out.push_back({&f, {line.frequency}, line.gain, 1.0, line.gain, 0.0});
+    }
+  }
+  return out;
+}
+
+/// Fits `from` with one more effect, for the effects that the score test likes best.
+std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_forms) const {
+  const Rules& rules = options_.rules;
+  std::vector<Score> scores = Screen(fitter_, from).all(forms_);
+  for (Score& s : lines(from)) scores.push_back(std::move(s));
+  std::stable_sort(scores.begin(), scores.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
+  if (scores.empty()) return {};
+  const double top = scores[0].gain;
+  std::vector<Effect> order;
+  std::map<Effect, std::map<int, int>> used;
+  std::vector<Score> todo;
+  for (const Score& s : scores) {
+    const Effect e = s.form->effect;
+    const bool seen = std::find(order.begin(), order.end(), e) != order.end();
+    if (!seen) {
+      if (static_cast<int>(order.size()) >= most_effects) continue;
+      if (order.size() >= 3 && s.gain < rules.screen_share * top) continue;
+      if (s.gain < 6.0) continue;
+      order.push_back(e);
+    }
+    auto& forms = used[e];
+    const bool new_form = forms.count(s.form->kind) == 0;
+    if (new_form && static_cast<int>(forms.size()) >= most_forms) continue;
+    if (!new_form && forms[s.form->kind] >= (s.form->params.size() > 1 ? 2 : 1)) continue;
+    ++forms[s.form->kind];
+    todo.push_back(s);
+  }
+  std::vector<Fit> fits(todo.size());
+  parallel(options_.threads, todo.size(), [&](std::size_t i) {
+    auto forms = from.forms;
+    auto params = from.params;
+    forms.push_back(todo[i].form);
+    params.push_back(todo[i].start);
+    fits[i] = fitter_.fit(forms, from.base, params, {from.forms.empty() ? 25 : 18, 1e-4}, &from);
+  });
+  return fits;
+}
+
+/// Keeps the best fit of each set of effects.
+void Search::keep(std::vector<Fit> fits) {
+  for (Fit& f : fits) {
+    const auto mine = set_of(f);
+    if (mine.size() != f.forms.size()) continue;
+    const auto at = std::find_if(candidates_.begin(), candidates_.end(), [&](const Fit& c) { return set_of(c) == mine; });
+    if (at == candidates_.end()) candidates_.push_back(std::move(f));
+    else if (bic(f) < bic(*at)) *at = std::move(f);
+  }
+  std::stable_sort(candidates_.begin(), candidates_.end(), [&](const Fit& a, const Fit& b) { return bic(a) < bic(b); });
+}
+
+const Fit* Search::best(std::size_t effects) const {
+  for (const Fit& f : candidates_)
+    if (f.forms.size() == effects) return &f;
+  return nullptr;
+}
+
+/// Noise and overdispersion from the best fit so far, and all fits again under them.
+void Search::refresh() {
+  const Fit& top = candidates_.empty() || bic(candidates_[0]) > bic(base_) ? base_ : candidates_[0];
+  Noise noise = estimate_noise(fitter_, top);
+  noise.scatter = fitter_.noise().scatter;
+  if (!top.forms.empty() && model_.data().rig != Rig::forceps_bridge) {
+    // an effect that was missing may have looked like scatter, never the other way round
+    noise.scatter = std::min(noise.scatter, std::max(0.008, replicate_scatter(model_.data(), top)));
+  }
+  fitter_.set_noise(noise);
+  base_ = fitter_.fit({}, base_.base, {}, {12, 1e-5}, &base_);
+  if (candidates_.size() > 14) candidates_.resize(14);
+  parallel(options_.threads, candidates_.size(), [&](std::size_t i) {
+    const Fit old = candidates_[i];
+    candidates_[i] = fitter_.fit(old.forms, old.base, old.params, {6, 1e-4}, &old);
+  });
+  dispersion_ = 1.0;
+  const Fit* least = &base_;
+  for (const Fit& f : candidates_)
+    if (f.chi2 < least->chi2) least = &f;
+  dispersion_ = structure(*least).z > 3.0 ? structure(*least).dispersion : 1.0;
+  dispersion_ = std::max(dispersion_, replicate_dispersion(fitter_, *least));
+  keep({});
+}
+
+bool Search::worth_more(const Fit& f) const {
+  const Structure s = structure(f);
+  if (s.z > 3.5) return true;
+  const auto scores = Screen(fitter_, f).all(forms_);
+  if (!scores.empty() && scores[0].gain / dispersion_ > options_.rules.pair_evidence) return true;
+  return !lines(f).empty();
+}
+
+void Search::run() {
+  const auto say = [&](const char* stage, double share) {
+    if (options_.progress) options_.progress(stage, share);
+  };
+  say("baseline", 0.05);
+  fit_baseline();
+  say("one effect", 0.15);
+  keep(extend(base_, options_.rules.screen_most, 4));
+  refresh();
+  for (std::size_t size = 1; size < static_cast<std::size_t>(options_.rules.most_effects); ++size) {
+    const Fit* top = best(size);
+    if (top == nullptr || !worth_more(*top)) break;
+    if (bic(*top) > bic(base_) - options_.rules.accept_evidence) break;
+    say(size == 1 ? "pairs" : "three effects", 0.3 + 0.25 * static_cast<double>(size));
+    std::vector<Fit> parents;
+    for (const Fit& f : candidates_)
+      if (f.forms.size() == size && parents.size() < (size == 1 ? 3u : 1u)) parents.push_back(f);
+    for (const Fit& p : parents) keep(extend(p, size == 1 ? 4 : 3, 2));
+    refresh();
+    const Fit* next = best(size + 1);
+    top = best(size);
+    if (next == nullptr || top == nullptr || bic(*next) > bic(*top) - options_.rules.pair_evidence) break;
+  }
+}
+
+double Search::explained(const Fit& f) const {
+  const Fit* least = &base_;
+  for (const Fit& c : candidates_)
+    if (c.chi2 < least->chi2) least = &c;
+  const Structure left = structure(*least);
+  const double rest = left.z > 3.0 ? left.excess : 0.0;
+  const double all = base_.chi2 - least->chi2 + rest;
+  return all > 0.0 ? (base_.chi2 - f.chi2) / all : 0.0;
+}
+
+double Search::material(const Fit& f, const Fit& against) const {
+  double most = 0.0;
+  const Rules& rules = options_.rules;
+  for (std::size_t i = 0; i < f.predicted.size(); ++i)
+    for (std::size_t c = 0; c < f.predicted[i].size(); ++c) {
+      const Eigen::VectorXd change = (f.predicted[i][c] - against.predicted[i][c]) / fitter_.noise().output[c].full_scale;
+      if (!change.allFinite()) continue;
+      most = std::max(most, std::sqrt(change.squaredNorm() / static_cast<double>(change.size())) / rules.materiality);
+      const Eigen::Index w = std::max<Eigen::Index>(2, change.size() / 8);
+      for (Eigen::Index k = 0; k + w <= change.size(); k += w)
+        most = std::max(most, std::sqrt(change.segment(k, w).squaredNorm() / static_cast<double>(w)) / rules.window_materiality);
+    }
+  return most;
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,50 @@
+#pragma once
+// Fits of effect sets: singles, then pairs and triples where they earn it, best first. Works on one Fitter; every fit is a full
+// simulation of all records that are not held out.
+
+#include "reconcile/result.h"
+#include "reconcile/structure.h"
+
+namespace filum::reconcile {
+
+/// Runs work(0 ... n-1) on some threads; the order of results does not depend on how many.
+void parallel(int threads, std::size_t n, const std::function<void(std::size_t)>& work);
+
+class Search {
+ public:
+  Search(const RigModel& model, const std::vector<Form>& forms, const Options& options);
+
+  /// Baseline with the noise it implies; then singles; then more, while they earn it.
+  void run();
+
+  const Fitter& fitter() const { return fitter_; }
+  const Fit& base() const { return base_; }
+  /// Best fit of each set of effects.
+  const std::vector<Fit>& candidates() const { return candidates_; }
+  double dispersion() const { return dispersion_; }
+  double bic(const Fit& f) const { return f.chi2 / dispersion_ + f.parameters * std::log(static_cast<double>(f.samples)); }
+  /// Share of what is missing that a fit explains; `rest` is the structure left in the best fit of all.
+  double explained(const Fit& f) const;
+  /// Largest change of the prediction against another fit, over the rules' materiality (1: just material).
+  double material(const Fit& f, const Fit& against) const;
+  Structure structure(const Fit& f) const { return structure_of(f.white, f.parameters); }
+  const Fit* best(std::size_t effects) const;
+
+ private:
+  void fit_baseline();
+  std::vector<Fit> extend(const Fit& from, int most_effects, int most_forms) const;
+  std::vector<Score> lines(const Fit& from) const;
+  void keep(std::vector<Fit> fits);
+  void refresh();
+  bool worth_more(const Fit& f) const;
+
+  const RigModel& model_;
+  const std::vector<Form>& forms_;
+  const Options& options_;
+  Fitter fitter_;
+  Fit base_;
+  std::vector<Fit> candidates_;
+  double dispersion_ = 1.0;
+};
+
+}  // namespace filum::reconcile

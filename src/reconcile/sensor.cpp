@@ -1,0 +1,204 @@
+// Effects of the sensor, common to all rigs, in the order of a measuring chain: lag, drift, saturation; lines (pulsation, hum)
+// and the slow polynomial of a hand are linear columns whose amplitudes every record has for itself.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "reconcile/model.h"
+
+namespace filum::reconcile {
+namespace {
+
+double interpolate(const Eigen::VectorXd& time, const Eigen::VectorXd& v, double t, Eigen::Index& at) {
+  while (at + 1 < time.size() - 1 && time[at + 1] < t) ++at;
+  if (t <= time[0]) return v[0];
+  const double w = (t - time[at]) / (time[at + 1] - time[at]);
+  return v[at] + std::min(w, 1.0) * (v[at + 1] - v[at]);
+}
+
+/// First-order low pass, exact for an input linear between samples: tau y' + y = x.
+void low_pass(const Eigen::VectorXd& time, double tau, Eigen::Ref<Eigen::VectorXd> x) {
+  double y = x[0], before = x[0];
+  for (Eigen::Index n = 1; n < x.size(); ++n) {
+    const double dt = time[n] - time[n - 1];
+    const double q = dt / tau, decay = std::exp(-q);
+    const double slope = (x[n] - before) / dt;
+    // y = x - tau slope + C exp(-t/tau)
+    y = x[n] - tau * slope + (y - before + tau * slope) * decay;
+    before = x[n];
+    x[n] = y;
+  }
+}
+
+void apply_lag(const Trial& t, const Setting& s, Eigen::MatrixXd& out) {
+  const double* p = s.on(Effect::sensor_lag);
+  if (p == nullptr) return;
+  for (Eigen::Index c = 0; c < out.cols(); ++c) {
+    if (s.form(Effect::sensor_lag) == 0) {
+      Eigen::VectorXd v = out.col(c);
+      low_pass(t.time, p[0], v);
+      out.col(c) = v;
+    } else {
+      const Eigen::VectorXd v = out.col(c);
+      Eigen::Index at = 0;
+      for (Eigen::Index n = 0; n < v.size(); ++n) out(n, c) = interpolate(t.time, v, t.time[n] - p[0], at);
+    }
+  }
+}
+
+void apply_drift(const Trial& t, const Setting& s, double start, Eigen::MatrixXd& out) {
+  const double* p = s.on(Effect::sensor_drift);
+  if (p == nullptr) return;
+  const int channel = s.form(Effect::sensor_drift) / 2;
+  for (Eigen::Index n = 0; n < out.rows(); ++n) {
+    const double since = t.time[n] - start;
+    out(n, channel) += s.form(Effect::sensor_drift) % 2 == 0 ? p[0] * since : p[0] * std::log1p(since / p[1]);
+  }
+}
+
+void apply_saturation(const Setting& s, Eigen::MatrixXd& out) {
+  const double* p = s.on(Effect::saturation);
+  if (p == nullptr) return;
+  auto v = out.col(s.form(Effect::saturation) / 3);
+  switch (s.form(Effect::saturation) % 3) {
+    case 0: v = v.array().min(std::abs(p[0])).max(-std::abs(p[0])); break;
+    case 1: v = v.array().min(p[0]); break;
+    default: v = v.array().max(p[0]); break;
+  }
+}
+
+}  // namespace
+
+void RigModel::simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
+  rig(t, s, out);
+  apply_lag(t, s, out);
+  if (has_gain()) out *= s.gain;
+  apply_drift(t, s, session_start(), out);
+  apply_saturation(s, out);
+}
+
+Eigen::MatrixXd RigModel::free_columns(const Trial& t, const Setting& s) const {
+  std::vector<double> lines;
+  const auto add = [&](Effect e, int n) {
+    const double* p = s.on(e);
+    for (int i = 0; p != nullptr && i < n; ++i) lines.push_back(p[i]);
+  };
+  add(Effect::pulsation, s.form(Effect::pulsation) == 2 ? 2 : 1);
+  add(Effect::mains_hum, 1);
+  const int order = free_polynomial();
+  const Eigen::Index n = t.time.size();
+  Eigen::MatrixXd columns(n, order + 1 + 2 * static_cast<Eigen::Index>(lines.size()));
+  const double half = 0.5 * (t.time[n - 1] - t.time[0]);
+  const Eigen::ArrayXd x = (t.time.array() - t.time[0]) / half - 1.0;
+  for (int k = 0; k <= order; ++k) columns.col(k) = x.pow(k);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const Eigen::ArrayXd phase = 2.0 * std::numbers::pi * lines[i] * (t.time.array() - t.time[0]);
+    columns.col(order + 1 + 2 * static_cast<Eigen::Index>(i)) = phase.cos();
+    columns.col(order + 2 + 2 * static_cast<Eigen::Index>(i)) = phase.sin();
+  }
+  return columns;
+}
+
+double RigModel::full_scale(const std::string& output) const {
+  std::vector<double> all;
+  for (const Trial& t : data_.trials)
+    for (const double v : t.at(output))
+      if (std::isfinite(v)) all.push_back(v);
+  std::sort(all.begin(), all.end());
+  // quantiles, so that noise and single spikes do not set the scale
+  const auto at = [&](double q) { return all[static_cast<std::size_t>(q * static_cast<double>(all.size() - 1))]; };
+  return std::max(at(0.998) - at(0.002), 1e-300);
+}
+
+double RigModel::session_start() const {
+  double start = data_.trials[0].time[0];
+  for (const Trial& t : data_.trials) start = std::min(start, t.time[0]);
+  return start;
+}
+
+std::vector<Form> RigModel::sensor_forms() const {
+  std::vector<Form> out;
+  const Dataset& d = data_;
+  std::vector<double> steps, spans;
+  bool clocked = true;
+  for (const Trial& t : d.trials) {
+    clocked = clocked && t.clocked;
+    spans.push_back(t.time[t.samples() - 1] - t.time[0]);
+    steps.push_back(spans.back() / (t.samples() - 1));
+  }
+  const double dt = median(steps), span = median(spans);
+  if (clocked && has_scale()) {
+    const std::vector<std::vector<double>> starts = {{dt}, {5 * dt}, {0.03 * span}};
+    out.push_back({Effect::sensor_lag, 0, "first-order low pass of the output", {{"time_constant", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
+    out.push_back({Effect::sensor_lag, 1, "pure delay of the output", {{"delay", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
+  }
+  for (std::size_t c = 0; c < d.outputs.size(); ++c) {
+    const std::string& name = d.outputs[c];
+    const double fs = full_scale(name);
+    const int at = static_cast<int>(c);
+    std::string si = "-";
+    for (const ChannelInfo& k : info(d.rig).channels) if (k.name == name) si = k.unit;
+    if (name[0] == 'u' && d.rig == Rig::spatula_press) si = "m";
+    if (clocked && has_scale()) {
+      const double r = 3.0 * fs / span;
+      out.push_back({Effect::sensor_drift, 2 * at, name + ": offset linear in time", {{"rate", si + "/s", -r, r, false}}, {{0.02 * r}}, false});
+      out.push_back({Effect::sensor_drift, 2 * at + 1, name + ": offset logarithmic in time",
+                     {{"rate", si, -fs, fs, false}, {"start", "s", dt, span, true}}, {{0.02 * fs, 0.03 * span}}, false});
+    }
+    double low = 1e300, high = -1e300;
+    for (const Trial& t : d.trials)
+      for (const double v : t.at(name))
+        if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    const double peak = std::max(std::abs(low), std::abs(high));
+    if (low < 0) out.push_back({Effect::saturation, 3 * at, name + ": clipped on both sides", {{"limit", si, 0.2 * peak, 1.3 * peak, false}}, {{0.98 * peak}, {0.9 * peak}}, false});
+    if (high > 0) out.push_back({Effect::saturation, 3 * at + 1, name + ": clipped above", {{"limit", si, high - 0.9 * fs, high + 0.3 * fs, false}}, {{high - 0.02 * fs}, {high - 0.1 * fs}}, false});
+    if (low < -0.05 * fs) out.push_back({Effect::saturation, 3 * at + 2, name + ": clipped below", {{"limit", si, low - 0.3 * fs, low + 0.9 * fs, false}}, {{low + 0.02 * fs}, {low + 0.1 * fs}}, false});
+  }
+  if (clocked) out.push_back({Effect::mains_hum, 0, "line near 50 or 60 Hz, free phase in every record", {{"frequency", "Hz", 49.0, 61.0, false}}, {}, true});
+  return out;
+}
+
+std::vector<Form> RigModel::all_forms() const {
+  std::vector<Form> out = forms();
+  const auto own = effects_of(data_.rig);
+  for (Form& f : sensor_forms())
+    if (std::find(own.begin(), own.end(), f.effect) != own.end()) out.push_back(std::move(f));
+  return out;
+}
+
+std::unique_ptr<RigModel> make_model(const Dataset& d) {
+  switch (d.rig) {
+    case Rig::tissue_block:
+    case Rig::spatula_press: return make_tissue(d);
+    case Rig::vessel_inflation: return make_vessel(d);
+    case Rig::suture_cantilever: return make_cantilever(d);
+    case Rig::suture_pull: return make_capstan(d);
+    case Rig::needle_insertion: return make_needle(d);
+    case Rig::forceps_bridge: return make_forceps(d);
+    default: return make_hold(d);
+  }
+}
+
+std::vector<std::vector<double>> grid(const std::vector<std::vector<double>>& axes) {
+  std::vector<std::vector<double>> out = {{}};
+  for (const auto& axis : axes) {
+    std::vector<std::vector<double>> next;
+    for (const auto& head : out)
+      for (const double v : axis) {
+        next.push_back(head);
+        next.back().push_back(v);
+      }
+    out = std::move(next);
+  }
+  return out;
+}
+
+double median(std::vector<double> v) {
+  if (v.empty()) return 0.0;
+  const auto mid = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+  std::nth_element(v.begin(), mid, v.end());
+  return *mid;
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,163 @@
+#include "reconcile/structure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace filum::reconcile {
+
+Structure structure_of(const std::vector<Eigen::VectorXd>& white, int parameters, int length) {
+  Structure best;
+  Eigen::Index longest = 0, total = 0;
+  for (const auto& w : white) longest = std::max(longest, w.size()), total += w.size();
+  for (int L = length > 0 ? length : 1; L <= std::max<Eigen::Index>(1, longest / 3); L *= 2) {
+    double sum = 0.0;
+    int blocks = 0;
+    for (const auto& w : white)
+      for (Eigen::Index k = 0; k + L <= w.size(); k += L) {
+        const double s = w.segment(k, L).sum();
+        sum += s * s / L;
+        ++blocks;
+      }
+    if (blocks < 4) break;
+    const double free = std::max(2.0, blocks - parameters * std::min(1.0, 4.0 * blocks / static_cast<double>(total)));
+    const double z = (sum - free) / std::sqrt(2.0 * free);
+    if (z > best.z || length > 0) best = {sum - free, z, L, std::max(1.0, sum / free)};
+    if (length > 0) break;
+  }
+  return best;
+}
+
+namespace {
+
+/// Trimmed mean of squared differences at a lag: the largest hundredth (events) is left out and made up for.
+double variogram(const std::vector<Eigen::VectorXd>& records, int lag) {
+  std::vector<double> d;
+  for (const auto& r : records)
+    for (Eigen::Index k = lag; k < r.size(); ++k)
+      if (std::isfinite(r[k]) && std::isfinite(r[k - lag])) d.push_back(std::pow(r[k] - r[k - lag], 2));
+  if (d.empty()) return 0.0;
+  std::sort(d.begin(), d.end());
+  const std::size_t keep = std::max<std::size_t>(1, d.size() - d.size() / 50);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < keep; ++i) sum += d[i];
+  return sum / static_cast<double>(keep) / (keep < d.size() ? 0.89 : 1.0);
+}
+
+}  // namespace
+
+Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
+  Noise noise = fitter.noise();
+  const Dataset& d = fitter.model().data();
+  for (std::size_t c = 0; c < d.outputs.size(); ++c) {
+    std::vector<Eigen::VectorXd> records;
+    double sum = 0.0;
+    int n = 0;
+    for (const auto& r : fit.residual) {
+      if (r.empty()) continue;
+      records.push_back(r[c]);
+      for (const double v : r[c])
+        if (std::isfinite(v)) sum += v * v, ++n;
+    }
+    const double v1 = variogram(records, 1), v2 = variogram(records, 2), v4 = variogram(records, 4);
+    OutputNoise& o = noise.output[c];
+    const Channel& channel = d.channel(d.outputs[c]);
+    const double floor = 1e-5 * o.full_scale;
+    if (channel.noise > 0.0) {
+      o.from = "stated";
+      o.sigma = std::max({channel.noise, std::sqrt(0.5 * v1), floor});
+      o.rho = std::clamp(1.0 - 0.5 * v1 / (o.sigma * o.sigma), 0.0, 0.98);
+      // a variogram that keeps rising says the same more carefully; a slow misfit cannot lift it beyond the stated noise
+      continue;
+    }
+    o.from = "fast part";
+    const double r2 = v1 > 0 ? v2 / v1 - 1.0 : 0.0, r4 = v2 > 0 ? std::sqrt(std::max(0.0, v4 / v2 - 1.0)) : 0.0;
+    o.rho = std::clamp(0.5 * (r2 + r4) < 0.08 ? 0.0 : 0.5 * (r2 + r4), 0.0, 0.97);
+    o.sigma = std::max(std::sqrt(0.5 * v1 / (1.0 - o.rho)), floor);
+    const double rms = n > 0 ? std::sqrt(sum / n) : o.sigma;
+    if (o.sigma > rms && rms > floor) {  // the variogram cannot ask for more than is there
+      o.sigma = rms;
+      o.rho = std::clamp(1.0 - 0.5 * v1 / (rms * rms), 0.0, 0.97);
+    }
+  }
+  return noise;
+}
+
+double replicate_scatter(const Dataset& d, const Fit& loose) {
+  std::map<std::string, std::vector<double>> groups;
+  for (std::size_t i = 0; i < d.trials.size(); ++i)
+    if (!d.trials[i].repeat.empty() && !d.trials[i].hold_out)
+      groups[d.trials[i].repeat + d.protocol_text(d.trials[i])].push_back(loose.log_scale[i]);
+  double sum = 0.0;
+  int freedom = 0;
+  for (const auto& [key, v] : groups) {
+    double mean = 0.0;
+    for (const double x : v) mean += x / static_cast<double>(v.size());
+    for (const double x : v) sum += (x - mean) * (x - mean);
+    freedom += static_cast<int>(v.size()) - 1;
+  }
+  // few groups say little: the contract's 5-10 % is the second voice
+  if (freedom == 0) return 0.012;
+  const double s = std::sqrt(sum / freedom);
+  return std::clamp(s * (1.0 + 1.0 / freedom), 0.008, 0.15);
+}
+
+double replicate_dispersion(const Fitter& fitter, const Fit& fit) {
+  const Dataset& d = fitter.model().data();
+  std::map<std::string, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < d.trials.size(); ++i)
+    if (!d.trials[i].repeat.empty() && i < fit.white.size() && fit.white[i].size() > 0)
+      groups[d.trials[i].repeat + d.protocol_text(d.trials[i])].push_back(i);
+  std::vector<Eigen::VectorXd> difference;
+  for (const auto& [key, members] : groups)
+    for (std::size_t k = 1; k < members.size(); ++k) {
+      const auto &a = fit.white[members[k]], &b = fit.white[members[k - 1]];
+      if (a.size() == b.size()) difference.push_back((a - b) / std::numbers::sqrt2);
+    }
+  if (difference.empty()) return 1.0;
+  return structure_of(difference, static_cast<int>(difference.size())).dispersion;
+}
+
+Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double high) {
+  const Dataset& d = fitter.model().data();
+  Line best;
+  double span = 0.0;
+  for (const Trial& t : d.trials) span = std::max(span, t.time[t.samples() - 1] - t.time[0]);
+  const double step = 0.3 / span;
+  std::vector<double> power, frequency;
+  int columns = 0;
+  for (double f = low; f <= high + 1e-12 && power.size() < 4000; f += step) frequency.push_back(f);
+  power.assign(frequency.size(), 0.0);
+  for (std::size_t i = 0; i < d.trials.size(); ++i) {
+    if (i >= fit.residual.size() || fit.residual[i].empty()) continue;
+    const Trial& t = d.trials[i];
+    for (std::size_t c = 0; c < d.outputs.size(); ++c) {
+      // amplitude of the raw residual over the AR(1) spectrum at that frequency
+      const OutputNoise& o = fitter.noise().output[c];
+      const Eigen::VectorXd& r = fit.residual[i][c];
+      const double dt = (t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1);
+      columns += 2;
+      for (std::size_t k = 0; k < frequency.size(); ++k) {
+        const double w = 2.0 * std::numbers::pi * frequency[k];
+        double sc = 0, ss = 0, sy = 0, cy = 0, cc = 0;
+        for (Eigen::Index n = 0; n < r.size(); ++n) {
+          if (!std::isfinite(r[n])) continue;
+          const double phase = w * (t.time[n] - t.time[0]), si = std::sin(phase), co = std::cos(phase);
+          ss += si * si, cc += co * co, sc += si * co, sy += si * r[n], cy += co * r[n];
+        }
+        const double det = ss * cc - sc * sc;
+        if (det <= 1e-6 * (ss + cc) * (ss + cc)) continue;
+        const double a = (sy * cc - cy * sc) / det, b = (cy * ss - sy * sc) / det;
+        const double psd = o.sigma * o.sigma * (1 - o.rho * o.rho) / (1 + o.rho * o.rho - 2 * o.rho * std::cos(w * dt));
+        power[k] += (a * sy + b * cy) / psd;
+      }
+    }
+  }
+  const double background = std::max(1.0, median(power) / std::max(1.0, columns - 0.7));
+  for (std::size_t k = 0; k < power.size(); ++k)
+    if (power[k] / background > best.gain) best = {frequency[k], power[k] / background, columns};
+  return best;
+}
+
+}  // namespace filum::reconcile

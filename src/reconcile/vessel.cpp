@@ -1,0 +1,219 @@
+// vessel-inflation: incompressible tube, wall from a to b, ends held or at a given stretch; r^2 = b^2 + ... by volume.
+// Linear elastic (Lame): u = C/r, P = 2 mu C (1/a^2 - 1/b^2), mu = E/3, outer diameter 2 b (1 - (lz-1)/2) + 2 C/b.
+// Further terms add pressure as a function of C, by Gauss quadrature over the wall, local stretch l = r'/R of the finite motion
+// r'^2 = R^2 + 2 C (which agrees with u = C/r to first order), P = int (s_theta - s_r) dr'/r':
+//   fibres      W = k1/(2 k2)(exp(k2 E^2)-1), E = cos^2(b)(l^2-1)/2 + sin^2(b)(lz^2-1)/2, in tension (Holzapfel, Gasser & Ogden 2000)
+//   stiffening  4 c20 (I1-3)(l^2 - l^-2), c10 = E/6                (Yeoh 1993)
+//   tone        s_act (1 - ((lm-l)/(lm-1))^2), or constant         (Rachev & Hayashi 1999)
+//   tethering   pressure k u(b) from outside                        residual stress: neo-Hookean sector (Chuong & Fung 1986)
+// Valid: thick or thin wall, quasi-static. Memory acts on the pressure that the wall's motion asks for.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "reconcile/hereditary.h"
+#include "reconcile/model.h"
+
+namespace filum::reconcile {
+namespace {
+
+constexpr int kPoints = 5;
+constexpr double kNode[kPoints] = {0.046910077, 0.230765345, 0.5, 0.769234655, 0.953089923};
+constexpr double kWeight[kPoints] = {0.118463443, 0.239314335, 0.284444444, 0.239314335, 0.118463443};
+
+struct Wall {
+  double a, b, lame, mu;  // lame = 1/a^2 - 1/b^2
+};
+
+class Vessel final : public RigModel {
+ public:
+  explicit Vessel(const Dataset& d) : RigModel(d) {
+    std::vector<double> spans;
+    for (const Trial& t : d.trials) {
+      spans.push_back(t.time[t.samples() - 1] - t.time[0]);
+      largest_ = std::max(largest_, t.at("pressure").cwiseAbs().maxCoeff());
+      const Eigen::VectorXd& D = t.at("outer_diameter");
+      for (const double v : D)
+        if (std::isfinite(v)) strain_ = std::max(strain_, std::abs(v / t.size("outer_diameter") - 1.0));
+      b_ = 0.5 * t.size("outer_diameter");
+      a_ = b_ - t.size("wall_thickness");
+    }
+    span_ = median(spans);
+  }
+  bool has_gain() const override { return true; }
+  std::vector<double> guess() const override;
+  std::vector<Form> forms() const override;
+  void rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const override;
+
+ private:
+  double extra(double C, double lz, const Wall& w, const Setting& s) const;
+  double sector(double C, double angle, const Wall& w) const;
+  double solve(double P, double lz, double start, double softened, const Wall& w, const Setting& s) const;
+
+  double largest_ = 1e-9, strain_ = 1e-3, a_ = 1.0, b_ = 1.0, span_ = 1.0;
+};
+
+/// Pressure that a neo-Hookean tube closed from a sector of this opening angle bears, less that of the one without.
+double Vessel::sector(double C, double angle, const Wall& w) const {
+  const double k = 1.0 / (1.0 - angle / (2.0 * std::numbers::pi));  // r'^2 = r0^2 + (R^2 - R0^2)/k
+  const auto pressure = [&](double K, double c, double R_in) {
+    // reference radii R (open), deformed r of the wall at motion c
+    double P = 0.0;
+    const double ri = std::sqrt(w.a * w.a + 2.0 * c), ro = std::sqrt(w.b * w.b + 2.0 * c);
+    for (int i = 0; i < kPoints; ++i) {
+      const double r = ri + (ro - ri) * kNode[i];
+      const double R = std::sqrt(std::max(R_in * R_in + K * (r * r - ri * ri), 1e-30));
+      const double l = r * K / R;
+      P += kWeight[i] * (ro - ri) * w.mu * (l * l - 1.0 / (l * l)) / r;
+    }
+    return P;
+  };
+  // open inner radius such that the unloaded tube is the one measured
+  double low = 0.2 * w.a, high = 6.0 * w.a * k;
+  for (int i = 0; i < 40; ++i) {
+    const double mid = 0.5 * (low + high);
+    (pressure(k, 0.0, mid) > 0.0 ? low : high) = mid;
+  }
+  return pressure(k, C, 0.5 * (low + high)) - pressure(1.0, C, w.a);
+}
+
+double Vessel::extra(double C, double lz, const Wall& w, const Setting& s) const {
+  const double *fibre = s.on(Effect::fibre_stiffening), *stiff = s.on(Effect::strain_stiffening), *tone = s.on(Effect::smooth_muscle_tone);
+  double P = 0.0;
+  if (fibre != nullptr || stiff != nullptr || tone != nullptr) {
+    const double ri = std::sqrt(std::max(w.a * w.a + 2.0 * C, 1e-4 * w.a * w.a)), ro = std::sqrt(std::max(w.b * w.b + 2.0 * C, 1.1e-4 * w.b * w.b));
+    for (int i = 0; i < kPoints; ++i) {
+      const double r = ri + (ro - ri) * kNode[i];
+      const double l = r / std::sqrt(std::max(r * r - 2.0 * C, 1e-4 * w.a * w.a));
+      double stress = 0.0;
+      if (fibre != nullptr) {
+        const double c2 = std::pow(std::cos(fibre[2]), 2), e = c2 * 0.5 * (l * l - 1.0) + (1.0 - c2) * 0.5 * (lz * lz - 1.0);
+        const double turn = s.form(Effect::fibre_stiffening) == 1 ? 1.0 : 2.0;  // one or two families
+        if (e > 0.0) stress += turn * fibre[0] * e * std::exp(std::min(fibre[1] * e * e, 60.0)) * c2 * l * l;
+      }
+      if (stiff != nullptr) {
+        const double lr = 1.0 / l, i1 = l * l + lr * lr - 2.0, c10 = 0.5 * w.mu;
+        if (s.form(Effect::strain_stiffening) == 0) stress += 4.0 * stiff[0] * c10 * i1 * (l * l - lr * lr);
+        else stress += w.mu * std::expm1(std::min(2.0 * stiff[0] * i1, 50.0)) * (l * l - lr * lr);
+      }
+      if (tone != nullptr) {
+        const double x = (tone[1] - l) / (tone[1] - 1.0);
+        stress += tone[0] * (s.form(Effect::smooth_muscle_tone) == 0 ? std::max(0.0, 1.0 - x * x) : std::exp(-std::pow((l - tone[1]) / 0.15, 2)));
+      }
+      P += kWeight[i] * (ro - ri) * stress / r;
+    }
+  }
+  if (const double* p = s.on(Effect::perivascular_tethering)) P += p[0] * C / w.b;
+  if (const double* p = s.on(Effect::residual_stress)) P += sector(C, p[0], w);
+  return P;
+}
+
+/// C that bears the pressure P; monotone, so secant steps guarded by bisection.
+double Vessel::solve(double P, double lz, double start, double softened, const Wall& w, const Setting& s) const {
+  const auto miss = [&](double C) { return softened * (2.0 * w.mu * C * w.lame + extra(C, lz, w, s)) - P; };
+  double low = -0.49 * w.a * w.a, high = 40.0 * w.a * w.a, C = start;
+  for (int i = 0; i < 60; ++i) {
+    const double f = miss(C);
+    (f > 0.0 ? high : low) = C;
+    const double h = 1e-6 * w.a * w.a, slope = (miss(C + h) - f) / h;
+    double next = slope > 0.0 ? C - f / slope : 0.5 * (low + high);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - C) < 1e-10 * w.a * w.a) return next;
+    C = next;
+  }
+  return C;
+}
+
+void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
+  Wall w{};
+  w.b = 0.5 * t.size("outer_diameter");
+  w.a = w.b - t.size("wall_thickness");
+  w.lame = 1.0 / (w.a * w.a) - 1.0 / (w.b * w.b);
+  w.mu = s.base[0] * s.scale / 3.0;
+  Eigen::VectorXd P = t.at("pressure");
+  if (const double* p = s.on(Effect::viscoelastic_relaxation)) {
+    const int kind = s.form(Effect::viscoelastic_relaxation);
+    creep(kind == 0 ? prony(p[0], p[1]) : kind == 1 ? prony(p[0], p[1], p[2], p[3]) : fractional(p[0], p[1], p[2]), t.time, P);
+  }
+  const double* soft = s.on(Effect::first_cycle_softening);
+  const bool plain = soft == nullptr && s.on(Effect::fibre_stiffening) == nullptr && s.on(Effect::strain_stiffening) == nullptr &&
+                     s.on(Effect::smooth_muscle_tone) == nullptr && s.on(Effect::perivascular_tethering) == nullptr && s.on(Effect::residual_stress) == nullptr;
+  out.resize(t.samples(), static_cast<Eigen::Index>(data().outputs.size()));
+  double C = 0.0, top = 0.0;
+  for (Eigen::Index n = 0; n < P.size(); ++n) {
+    const double lz = t.has("axial_stretch") ? t.at("axial_stretch")[n] : 1.0;
+    if (plain) {
+      C = P[n] / (2.0 * w.mu * w.lame);
+    } else {
+      double softened = 1.0;
+      if (soft != nullptr) {  // energy over the modulus, of the state of the step before
+        const double e = C / (w.a * w.b), energy = 0.5 * e * e;
+        top = std::max(top, energy);
+        softened = 1.0 - soft[0] * -std::expm1(-(top - energy) / soft[1]);
+      }
+      C = solve(P[n], lz, C, softened, w, s);
+    }
+    for (std::size_t c = 0; c < data().outputs.size(); ++c) {
+      double& y = out(n, static_cast<Eigen::Index>(c));
+      if (data().outputs[c] == "outer_diameter") y = 2.0 * w.b * (1.0 - 0.5 * (lz - 1.0)) + 2.0 * C / w.b;
+      else y = 3.0 * w.mu * (lz - 1.0) * std::numbers::pi * (w.b * w.b - w.a * w.a);
+    }
+  }
+}
+
+std::vector<double> Vessel::guess() const {
+  double pu = 0.0, pp = 0.0;
+  for (const Trial& t : data().trials) {
+    const double b = 0.5 * t.size("outer_diameter"), a = b - t.size("wall_thickness"), lame = 1.0 / (a * a) - 1.0 / (b * b);
+    for (Eigen::Index n = 0; n < t.time.size(); ++n) {
+      const double lz = t.has("axial_stretch") ? t.at("axial_stretch")[n] : 1.0;
+      const double rise = t.at("outer_diameter")[n] - 2.0 * b * (1.0 - 0.5 * (lz - 1.0)), x = t.at("pressure")[n] * 3.0 / (b * lame);
+      if (std::isfinite(rise)) pu += rise * x, pp += x * x;
+    }
+  }
+  const double E = pp / std::max(pu, 1e-300);
+  return {E > 1.0 && E < 1e10 ? E : data().nominal.at("youngs_modulus")};
+}
+
+std::vector<Form> Vessel::forms() const {
+  const double T = span_, tiny = 1e-3 * T;
+  const double inner = std::max(strain_, 0.01) * b_ / a_, green = inner + 0.5 * inner * inner;
+  const double stress = largest_ * a_ / (b_ - a_);
+  const double k1 = 0.2 * stress / green, deg = std::numbers::pi / 180.0;
+  const bool axial = std::any_of(data().trials.begin(), data().trials.end(), [](const Trial& t) {
+    return t.has("axial_stretch") && t.at("axial_stretch").maxCoeff() - t.at("axial_stretch").minCoeff() > 0.02;
+  });
+  const ParamSpec k1s{"k1", "Pa", 1e-3 * k1, 50 * k1, true}, k2s{"k2", "-", 0.01 / (green * green), 40.0 / (green * green), true};
+  // without an axial stretch the angle only scales k1 and k2: held near 40 degrees
+  const ParamSpec angle{"fibre_angle", "rad", (axial ? 5 : 39.9) * deg, (axial ? 75 : 40.1) * deg, false};
+  std::vector<Form> f;
+  for (int k = 0; k < 2; ++k)
+    f.push_back({Effect::fibre_stiffening, k, k == 0 ? "two symmetric families" : "one family", {k1s, k2s, angle},
+                 grid({{k1}, {1.0 / (green * green), 8.0 / (green * green)}, {40 * deg}}), false});
+  const double r0 = 0.1 / (inner * inner);
+  for (int k = 0; k < 2; ++k)
+    f.push_back({Effect::strain_stiffening, k, k == 0 ? "Yeoh" : "exponential", {{"c20_over_c10", "-", 1e-3 * r0, 300 * r0, true}}, {{r0}, {6 * r0}}, false});
+  f.push_back({Effect::smooth_muscle_tone, 0, "parabola of the stretch", {{"active_stress", "Pa", 1e-3 * stress, 5 * stress, true}, {"stretch_of_most_tone", "-", 1.02, 1.8, false}},
+               grid({{0.2 * stress}, {1.1, 1.3}}), false});
+  f.push_back({Effect::smooth_muscle_tone, 1, "bell of the stretch", {{"active_stress", "Pa", 1e-3 * stress, 5 * stress, true}, {"stretch_of_most_tone", "-", 0.95, 1.8, false}},
+               grid({{0.2 * stress}, {1.05, 1.25}}), false});
+  f.push_back({Effect::residual_stress, 0, "neo-Hookean sector", {{"opening_angle", "rad", 2 * deg, 300 * deg, false}}, {{60 * deg}, {150 * deg}}, false});
+  const double k = largest_ / (strain_ * b_);
+  f.push_back({Effect::perivascular_tethering, 0, "elastic foundation", {{"foundation_stiffness", "Pa/m", 1e-3 * k, 3 * k, true}}, {{0.2 * k}}, false});
+  const ParamSpec g1{"g1", "-", 0.005, 0.97, false}, tau{"tau1", "s", tiny, 10 * T, true};
+  const auto visco = Effect::viscoelastic_relaxation;
+  f.push_back({visco, 0, "one exponential", {g1, tau}, grid({{0.3}, {0.02 * T, 0.1 * T, 0.5 * T}}), false});
+  f.push_back({visco, 2, "fractional Zener (Cole-Cole) relaxation", {g1, tau, {"order", "-", 0.15, 0.95, false}}, grid({{0.4}, {0.03 * T, 0.2 * T}, {0.6}}), false});
+  f.push_back({visco, 1, "two exponentials", {{"g1", "-", 0.005, 0.6, false}, tau, {"g2", "-", 0.005, 0.39, false}, {"tau2", "s", tiny, 10 * T, true}},
+               grid({{0.2}, {0.02 * T}, {0.2}, {0.2 * T}}), false});
+  const double W = 0.5 * inner * inner;
+  f.push_back({Effect::first_cycle_softening, 0, "exponential in the energy", {{"d", "-", 0.005, 0.9, false}, {"W0", "Pa", 0.01 * W, 5 * W, true, 0}}, grid({{0.2}, {0.1 * W, 0.5 * W}}), false});
+  return f;
+}
+
+}  // namespace
+
+std::unique_ptr<RigModel> make_vessel(const Dataset& d) { return std::make_unique<Vessel>(d); }
+
+}  // namespace filum::reconcile
