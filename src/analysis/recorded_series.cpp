@@ -25,7 +25,7 @@ class SceneClock {
 
  private:
   static bool by_hand(const std::string& input) {
-    for (const char* word : {"pointer", "haptic", "igtl", "tracker"})
+    for (const char* word : {"pointer", "haptic", "OpenIGTLink"})
       if (input.find(word) != std::string::npos) return true;
     return false;
   }

@@ -17,8 +17,18 @@ struct ExportOptions {
   bool json = false;
 };
 
+int print_files(const std::vector<std::string>& files, bool json) {
+  if (json) {
+    print_json({{"files", files}});
+  } else {
+    for (const std::string& file : files) std::printf("%s\n", file.c_str());
+  }
+  return kDone;
+}
+
 int run(const ExportOptions& o) {
   const RecordingReader recording(o.file);
+  if (o.format == "bids") return print_files(export_bids(recording, o.folder), o.json);
   std::vector<Table> tables = recorded_tables(recording);
   {
     const RecordedSetup recorded(recording);
@@ -27,21 +37,16 @@ int run(const ExportOptions& o) {
   }
   const auto files = o.format == "csv" ? export_csv(tables, recording.meta(), o.folder)
                                        : export_hdf5(tables, recording.meta(), o.folder);
-  if (o.json) {
-    print_json({{"files", files}});
-  } else {
-    for (const std::string& file : files) std::printf("%s\n", file.c_str());
-  }
-  return kDone;
+  return print_files(files, o.json);
 }
 
 }  // namespace
 
 void add_export(CLI::App& app, Action& action) {
   auto o = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Write a recording as CSV or HDF5 with a data dictionary");
+  CLI::App* command = app.add_subcommand("export", "Write a recording as CSV or HDF5 with a data dictionary, or as Motion-BIDS");
   command->add_option("file", o->file, "Recording")->required();
-  command->add_option("--format", o->format, "csv or hdf5")->check(CLI::IsMember({"csv", "hdf5"}))->capture_default_str();
+  command->add_option("--format", o->format, "csv, hdf5 or bids (Motion-BIDS)")->check(CLI::IsMember({"csv", "hdf5", "bids"}))->capture_default_str();
   command->add_option("--out", o->folder, "Folder to write to; made if it is not there")->required();
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
   command->callback([o, &action] { action.run = [o] { return run(*o); }; });

@@ -1,10 +1,14 @@
 #include "cli/inputs.h"
 
+#include <charconv>
+#include <cstdio>
 #include <filesystem>
 
 #include "base/error.h"
 #include "cli/setup.h"
 #include "devices/demonstrator.h"
+#include "devices/haptic_link.h"
+#include "devices/igtl_tracker.h"
 #include "devices/replay_device.h"
 #include "devices/serial_forceps.h"
 #include "session/recording_reader.h"
@@ -31,16 +35,69 @@ std::unique_ptr<Device> open_forceps(const std::string& port, const std::string&
   return std::make_unique<SerialForceps>(port, ForcepsCalibration::load(root + "/models/forceps/default.yaml"));
 }
 
+struct HostPort {
+  std::string address = "127.0.0.1";
+  int port = 0;
+};
+
+/// "18930" or "192.168.1.5:18930"; loopback unless an address is given.
+HostPort host_port(const std::string& text) {
+  HostPort at;
+  const std::size_t colon = text.rfind(':');
+  if (colon != std::string::npos) at.address = text.substr(0, colon);
+  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
+  const auto end = port.data() + port.size();
+  const auto read = std::from_chars(port.data(), end, at.port);
+  if (read.ec != std::errc{} || read.ptr != end || at.port < 1 || at.port > 65535)
+    throw InputError("--input", "port", text, "a port, or ADDRESS:PORT");
+  return at;
+}
+
+std::unique_ptr<Device> open_hand_device(const std::string& name, const std::string& root) {
+  const auto after = [&](const char* prefix) { return name.substr(std::string(prefix).size()); };
+  if (name.starts_with("serial:")) return open_forceps(after("serial:"), root);
+  if (name.starts_with("haptic:")) {
+    const HostPort at = host_port(after("haptic:"));
+    return std::make_unique<HapticLink>(at.address, at.port);
+  }
+  if (name.starts_with("igtl:")) {
+    const HostPort at = host_port(after("igtl:"));
+    return std::make_unique<IgtlTracker>(at.address, at.port);
+  }
+  return nullptr;
+}
+
+/// Devices that hands move, joined by "+": the first is believed where two measure the same.
+InputDevices open_hands(const std::string& input, const std::string& root, double motion_scale) {
+  InputDevices result;
+  for (std::size_t from = 0; from <= input.size();) {
+    const std::size_t plus = std::min(input.find('+', from), input.size());
+    auto device = open_hand_device(input.substr(from, plus - from), root);
+    if (!device) throw InputError("--input", "input", input.substr(from, plus - from), "serial:PATH, haptic:PORT or igtl:PORT");
+    result.description += (result.description.empty() ? "" : " and ") + device->name();
+    result.devices.push_back(std::move(device));
+    from = plus + 1;
+  }
+  result.scale.factor = motion_scale;
+  if (motion_scale != 1.0) {
+    char text[40];
+    std::snprintf(text, sizeof text, ", motion scale %.6g", motion_scale);
+    result.description += text;
+  }
+  return result;
+}
+
+bool names_hands(const std::string& input) {
+  for (const char* prefix : {"serial:", "haptic:", "igtl:"})
+    if (input.starts_with(prefix)) return true;
+  return false;
+}
+
 }  // namespace
 
-InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task) {
+InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task, double motion_scale) {
+  if (names_hands(input)) return open_hands(input, root, motion_scale);
   InputDevices result;
-  const std::string serial = "serial:";
-  if (input.starts_with(serial)) {
-    result.devices.push_back(open_forceps(input.substr(serial.size()), root));
-    result.description = "serial " + input.substr(serial.size());
-    return result;
-  }
   result.scripted = true;
   if (input == "demo") {
     const std::string script = demonstration_file(root, task);
@@ -50,7 +107,7 @@ InputDevices open_inputs(const std::string& input, const std::string& root, cons
     return result;
   }
   if (!std::filesystem::is_regular_file(input)) {
-    throw InputError("--input", "input", input, "demo, serial:PATH, a demonstration (*.yaml) or a recording");
+    throw InputError("--input", "input", input, "demo, serial:PATH, haptic:PORT, igtl:PORT, a demonstration (*.yaml) or a recording");
   }
   const bool script = std::filesystem::path(input).extension() == ".yaml";
   result.devices.push_back(script ? std::make_unique<Demonstrator>(input) : open_recording(input));

@@ -11,6 +11,12 @@
 namespace filum {
 namespace {
 
+HapticOptions haptic_options(const MotionScale& scale) {
+  HapticOptions options;
+  options.scale = scale;
+  return options;
+}
+
 constexpr std::size_t kQueue = 64;              // observations between world and scoring
 constexpr std::uint64_t kStepsAfterDone = 250;  // more than kQueue, so that the last step does not depend on the threads' luck
 constexpr std::uint64_t kStepsAfterScript = 40;  // shorter than it takes for a silent device to count as lost
@@ -46,7 +52,7 @@ LiveSession::LiveSession(Setup setup, InputDevices inputs, LiveOptions options)
       pointer_(inputs.pointer),
       device_names_(names_of(inputs.devices)),
       world_(setup_.model),
-      hands_(std::move(inputs.devices)),
+      hands_(std::move(inputs.devices), haptic_options(inputs.scale)),
       task_(setup_.task, world_.description()),
       pacing_(world_.description().dt),
       observations_(kQueue, world_.observation()),

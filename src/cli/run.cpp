@@ -9,6 +9,7 @@
 #include "cli/live_session.h"
 #include "cli/options.h"
 #include "cli/session_files.h"
+#include "devices/igtl_stream.h"
 
 namespace filum {
 namespace {
@@ -17,6 +18,8 @@ struct RunOptions {
   CommonOptions common;
   std::string task, input = "demo", model, record;
   bool real_time = false;
+  double motion_scale = 1.0;
+  int stream_port = 0;     // of OpenIGTLink, 0 none
   double longest = 600.0;  // [s]
 };
 
@@ -45,13 +48,21 @@ void print_text(const LiveOutcome& outcome) {
 
 int run(const RunOptions& o) {
   Setup setup = load_setup(o.common.root, o.task, o.model);
-  InputDevices inputs = open_inputs(o.input, o.common.root, o.task);
+  InputDevices inputs = open_inputs(o.input, o.common.root, o.task, o.motion_scale);
   std::unique_ptr<Recorder> recorder;
   if (!o.record.empty()) recorder = make_recorder(o.record, setup, inputs.description);
   LiveOptions options;
   options.paced = o.real_time || !inputs.scripted;  // hands cannot be hurried
   options.longest = o.longest;
   options.recorder = recorder.get();
+  std::unique_ptr<IgtlStream> stream;
+  if (o.stream_port > 0) {
+    stream = std::make_unique<IgtlStream>("127.0.0.1", o.stream_port);
+    options.show = [&stream](const LiveView& view) {
+      const auto us = static_cast<std::int64_t>(1e6 * view.observation.time);
+      for (int i = 0; i < view.observation.n_tools; ++i) stream->send(i, view.observation.tools[static_cast<std::size_t>(i)].X_WT, us);
+    };
+  }
   LiveSession session(std::move(setup), std::move(inputs), std::move(options));
   session.start();
   const LiveOutcome outcome = session.wait();
@@ -79,9 +90,11 @@ void add_run(CLI::App& app, Action& action) {
   auto o = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Run a task without a browser and print its score");
   command->add_option("task", o->task, "Name of the task, e.g. knot-square (see filum list)")->required();
-  command->add_option("--input", o->input, "demo, serial:PATH, a demonstration (*.yaml) or a recording")->capture_default_str();
+  command->add_option("--input", o->input, "demo, serial:PATH, haptic:[ADDRESS:]PORT, igtl:[ADDRESS:]PORT, several joined by +, a demonstration (*.yaml) or a recording")->capture_default_str();
   command->add_option("--model", o->model, "Suture model to use instead of the scene's");
   command->add_option("--record", o->record, "Store the session in this new file");
+  command->add_option("--motion-scale", o->motion_scale, "Movement in the scene over that of the hand")->check(CLI::Range(0.001, 10.0))->capture_default_str();
+  command->add_option("--igtl-out", o->stream_port, "Send the tools' poses by OpenIGTLink from this port of this machine")->check(CLI::Range(1, 65535));
   command->add_flag("--real-time", o->real_time, "Keep to the clock instead of running as fast as possible");
   command->add_option("--longest", o->longest, "End after this much scene time [s]")->check(CLI::Range(0.1, 36000.0))->capture_default_str();
   add_common(*command, o->common);

@@ -42,6 +42,12 @@ struct DeviceHealth {
   std::uint64_t rejected = 0;      // samples refused: NaN, out of range, wrong tool
 };
 
+/// Forces to be felt by the hands, of all tools.
+struct HandForces {
+  std::array<Vec3, kMaxTools> force{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // [N], frame W
+  std::array<bool, kMaxTools> valid{};                                          // false: no force
+};
+
 /// A source of samples. poll() is called at 1 kHz from the haptic thread: it may not block, allocate in the steady state or
 /// throw. Construction throws InputError (base/error.h) when the thing named cannot be opened or read.
 class Device {
@@ -52,6 +58,9 @@ class Device {
   /// Appends to `out` (capacity reserved by the caller, never more than kMaxSamplesPerPoll a call) the samples that have
   /// arrived by scene time `now_us` [us since the session started].
   virtual void poll(std::int64_t now_us, std::vector<DeviceSample>& out) noexcept = 0;
+  /// Called after poll() with what the hands should feel now; devices without motors take no notice. As poll(): no blocking,
+  /// allocating or throwing.
+  virtual void render(std::int64_t /*now_us*/, const HandForces& /*forces*/) noexcept {}
   virtual DeviceHealth health() const noexcept = 0;
   /// [us], how long a sample counts as the present when no newer one comes.
   virtual std::int64_t stale_after_us() const noexcept { return 100'000; }

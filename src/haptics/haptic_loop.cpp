@@ -42,6 +42,7 @@ ToolStates tool_states_of(const Observation& observation, std::int64_t now_us) n
 HapticLoop::HapticLoop(std::vector<std::unique_ptr<Device>> devices, const HapticOptions& options)
     : options_(options),
       devices_(std::move(devices)),
+      merge_(options.scale),
       couplings_{HandCoupling(options.coupling), HandCoupling(options.coupling),
                  HandCoupling(options.coupling)},
       samples_(options.sample_queue) {
@@ -95,14 +96,21 @@ void HapticLoop::render(const Inputs& inputs, std::int64_t now_us) noexcept {
     now_.scene_force[i] = world_live && tool.present ? tool.f_T_W : Vec3(Vec3::Zero());
     if (!input.valid || clutched || !world_live || !tool.present) {
       couplings_[i].release();
+      contacts_[i].release();
       now_.hand_force[i].setZero();
       continue;
     }
-    // The world runs at half this rate: between its states the tip goes on as it went.
-    const double since =
-        1e-6 * static_cast<double>(std::clamp<std::int64_t>(now_us - states.time_us, 0, 4000));
-    now_.hand_force[i] = couplings_[i].force(input.X_WD.p, tool.p_WT + since * tool.v_W, tool.v_W, dt);
+    // The world runs at half this rate: between its states a local model of what the tool touches goes on.
+    if (states.time_us != seen_states_us_ || !contacts_[i].known())
+      contacts_[i].update(tool.p_WT, tool.v_W, tool.f_T_W, input.X_WD.p, states.time_us);
+    const Vec3 felt = couplings_[i].force(input.X_WD.p, contacts_[i].tip(input.X_WD.p, now_us), tool.v_W, dt);
+    now_.hand_force[i] = options_.scale.factor * felt;
   }
+  seen_states_us_ = states.time_us;
+  HandForces forces;
+  forces.force = now_.hand_force;
+  forces.valid = now_.valid;
+  for (const auto& device : devices_) device->render(now_us, forces);
 }
 
 void HapticLoop::publish(std::int64_t now_us) noexcept {

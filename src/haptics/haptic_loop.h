@@ -15,6 +15,7 @@
 #include "devices/device.h"
 #include "haptics/hand_coupling.h"
 #include "haptics/input_merge.h"
+#include "haptics/local_contact.h"
 #include "haptics/period_stats.h"
 #include "world/inputs.h"
 #include "world/observation.h"
@@ -53,6 +54,7 @@ struct HapticReport {
 
 struct HapticOptions {
   HandCouplingOptions coupling;
+  MotionScale scale;                      // from the hand's space to the scene's; forces go back by the same factor
   std::int64_t period_us = 1000;          // [us]
   std::int64_t world_silent_us = 50'000;  // [us] without a new state of the tools: no force
   bool real_time = true;                  // run before ordinary threads where that is allowed
@@ -95,6 +97,8 @@ class HapticLoop {
   std::vector<DeviceSample> polled_;
   InputMerge merge_;
   std::array<HandCoupling, kMaxTools> couplings_;
+  std::array<LocalContact, kMaxTools> contacts_;
+  std::int64_t seen_states_us_ = -1;  // [us], of the tool states seen last
   PeriodStats periods_;
   HapticReport now_;
   std::int64_t last_tick_us_ = -1;  // [us]

@@ -60,7 +60,9 @@ Inputs InputMerge::inputs(std::int64_t now_us) noexcept {
     input.has_grip_force = input.valid && tool.force.holds(now_us);
     input.grip_force = input.has_grip_force ? tool.force.value : 0.0;
     if (input.valid) {
-      input.X_WD = through_clutch(tool, tool.X_WD.value, (input.buttons & kClutch) != 0);
+      const Pose& hand = tool.X_WD.value;
+      const Pose scaled{scale_.centre + scale_.factor * hand.p, hand.q};
+      input.X_WD = through_clutch(tool, scale_.factor == 1.0 && scale_.centre.isZero() ? hand : scaled, (input.buttons & kClutch) != 0);
       if (tool.measures_angle) input.grip_angle = tool.angle.value;
     }
     inputs.tools[i] = input;

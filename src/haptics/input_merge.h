@@ -12,8 +12,15 @@
 
 namespace filum {
 
+/// From the hand's space to the scene's: p_scene = centre + factor * p_hand. Orientation and grip are not scaled.
+struct MotionScale {
+  double factor = 1.0;          // scene over hand, e.g. 0.1 to move 1 mm by 10 mm of the hand
+  Vec3 centre = Vec3::Zero();   // [m], frame W, where the origin of the hand's space lies
+};
+
 class InputMerge {
  public:
+  explicit InputMerge(const MotionScale& scale = {}) : scale_(scale) {}
   static constexpr int kMaxSources = 8;
 
   /// A sample of device number `source`; it holds for `stale_after_us` [us] from its host_time_us. Where
@@ -51,6 +58,7 @@ class InputMerge {
 
   static Pose through_clutch(Tool& tool, const Pose& hand, bool clutch) noexcept;
 
+  MotionScale scale_;
   std::array<Tool, kMaxTools> tools_;
 };
 

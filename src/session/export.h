@@ -42,4 +42,7 @@ std::vector<std::string> export_csv(const std::vector<Table>& tables, const Reco
 std::vector<std::string> export_hdf5(const std::vector<Table>& tables, const RecordingMeta& meta,
                                      const std::string& folder);
 
+/// A Motion-BIDS dataset in `folder`; recordings exported to the same folder join it. Returns the files written.
+std::vector<std::string> export_bids(const RecordingReader& recording, const std::string& folder);
+
 }  // namespace filum

@@ -38,7 +38,7 @@ TEST(Spectrum, ToneGivesItsPowerFrequencyAndTheWindowsWidth) {
   EXPECT_NEAR(band_power(s, 8.0, 12.0).value, 0.5 * amplitude * amplitude, 1e-3 * amplitude * amplitude);
   const SpectralPeak peak = peak_between(s, 4.0, 20.0);
   EXPECT_NEAR(peak.frequency, f, 0.1 * s.df);
-  EXPECT_NEAR(peak.half_width, s.resolution(), 0.15 * s.resolution());
+  EXPECT_NEAR(peak.half_width, s.resolution(), 0.25 * s.resolution());  // four bins wide at most
   EXPECT_TRUE(peak.narrow);
 }
 

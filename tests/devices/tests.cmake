@@ -1,11 +1,29 @@
-foreach(name clock_sync demonstrator forceps_calibration forceps_stream frame_reader hand_tremor monotone_cubic pointer_device pose_script
+foreach(name calibration_file calibration_fit calibration_guide clock_sync demonstrator forceps_calibration forceps_stream frame_reader hand_tremor haptic_link igtl_tracker monotone_cubic pointer_device pose_script
              pose_track replay_device sample_check serial_forceps)
   filum_test(devices/${name})
 endforeach()
+filum_fuzz(devices/calibration_readings)
 filum_fuzz(devices/forceps_calibration)
 filum_fuzz(devices/frame_reader)
+filum_fuzz(devices/haptic_link)
+filum_fuzz(devices/igtl_tracker)
 filum_fuzz(devices/pose_script)
+
+# OpenIGTLink against Debian's library; without it one test says so and is skipped.
+find_package(OpenIGTLink QUIET PATHS /usr/lib/openigtlink)
+if(OpenIGTLink_FOUND)
+  filum_test(devices/igtl_library ${OpenIGTLink_LIBRARIES})
+  target_include_directories(devices_igtl_library_test SYSTEM PRIVATE ${OpenIGTLink_INCLUDE_DIRS})
+else()
+  add_test(NAME igtl_library.NotTested COMMAND ${CMAKE_COMMAND} -E echo
+    "SKIPPED: install libopenigtlink-dev to test against its library")
+  set_tests_properties(igtl_library.NotTested PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED")
+endif()
 
 # Forceps for those who have none: plays a demonstration through a pty.
 add_executable(filum_serial_feeder ${CMAKE_CURRENT_LIST_DIR}/serial_feeder.cpp)
 target_link_libraries(filum_serial_feeder PRIVATE filum_devices)
+
+# A haptic device for those who have none: a simulated one that talks to the trainer by UDP.
+add_executable(filum_haptic_client ${PROJECT_SOURCE_DIR}/hardware/haptic-link/reference_client.cpp)
+target_link_libraries(filum_haptic_client PRIVATE filum_options filum_base filum_link)

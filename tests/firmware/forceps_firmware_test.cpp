@@ -1,5 +1,5 @@
 // The real firmware under simavr, voltages in, bytes out through a pty, read by the trainer's own serial driver.
-// FILUM_FIRMWARE_SECONDS sets how long the long run is in simulated time (20 s unless said otherwise).
+// FILUM_FIRMWARE_SECONDS sets how long the long run is in simulated time (10 s unless said otherwise).
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -41,8 +41,8 @@ class Bench {
 
   /// One millisecond: the board runs, its bytes go down the line (through `damage` if there is one), the driver polls.
   template <class Damage>
-  void step(Damage&& damage) {
-    board_.run_us(1000);
+  void step(Damage&& damage, std::int64_t us = 1000) {
+    board_.run_us(us);
     std::vector<std::uint8_t> bytes = board_.take_sent();
     damage(bytes);
     sent_bytes_ += bytes.size();
@@ -77,7 +77,7 @@ class Bench {
 
 int long_run_seconds() {
   const char* text = std::getenv("FILUM_FIRMWARE_SECONDS");
-  return text ? std::max(1, std::atoi(text)) : 20;
+  return text ? std::max(1, std::atoi(text)) : 10;
 }
 
 TEST(ForcepsFirmware, EverySampleArrivesOnceWithItsCountsAndItsTime) {
@@ -248,19 +248,18 @@ TEST(ForcepsFirmware, PulledOutAndPutBackIsThereWithinASecond) {
 }
 
 TEST(ForcepsFirmware, OffsetAndDriftOfItsClockAreEstimated) {
-  for (const double ppm : {0.0, 80.0}) {
-    Bench bench;
-    bench.board_.set_clock_error(ppm);
-    bench.run(17'000);  // one ping a second, four to a point
-    const ClockDrift& drift = bench.driver_.stream().drift();
-    ASSERT_TRUE(drift.known());
-    const auto line = drift.at(bench.board_.time_us());
-    EXPECT_NEAR(line.drift_ppm, ppm, 30.0 + 3.0 * line.drift_uncertainty_ppm);
-    // The board's clock begins when the simulation does, so the offset is what has drifted, within the 1 ms of polling.
-    EXPECT_NEAR(line.offset_us, 1e-6 * ppm * static_cast<double>(bench.board_.time_us()), 1000.0);
-    std::printf("crystal %+.0f ppm: drift %.1f +- %.1f ppm, offset %.0f us\n", ppm, line.drift_ppm, line.drift_uncertainty_ppm,
-                line.offset_us);
-  }
+  const double ppm = 3000.0;  // the ceramic resonator of an Uno may be off by 5000
+  Bench bench;
+  bench.board_.set_clock_error(ppm);
+  bench.run(13'000);  // one ping a second, four to a point
+  const ClockDrift& drift = bench.driver_.stream().drift();
+  ASSERT_TRUE(drift.known());
+  const auto line = drift.at(bench.board_.time_us());
+  std::printf("crystal %+.0f ppm: drift %.1f +- %.1f ppm, offset %.0f us\n", ppm, line.drift_ppm, line.drift_uncertainty_ppm,
+              line.offset_us);
+  EXPECT_NEAR(line.drift_ppm, ppm, 150.0) << "1 ms of polling over the 8 s between the points";
+  const DeviceSample& last = bench.samples_.back();  // 1 to 2.5 ms old when it is polled
+  EXPECT_NEAR(line.offset_us, static_cast<double>(last.device_time_us - last.host_time_us) + 1750.0, 1250.0);
 }
 
 }  // namespace

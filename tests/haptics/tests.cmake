@@ -1,3 +1,3 @@
-foreach(name hand_coupling haptic_loop input_merge period_stats)
+foreach(name hand_coupling haptic_link_loop haptic_loop input_merge local_contact period_stats)
   filum_test(haptics/${name})
 endforeach()

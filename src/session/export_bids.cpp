@@ -1,0 +1,270 @@
+// A recording as Motion-BIDS (BIDS 1.9.0, modality "motion"; S. Jeung et al., Sci. Data 11 (2024) 716): one tracking system
+// for each tool in the hand's space (readings of the devices as they arrived, times in a LATENCY channel, nothing filled in)
+// and one in the scene's space (commanded poses, evenly sampled). Force and counts have no type of their own: MISC.
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "session/export.h"
+
+namespace filum {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+struct Channel {
+  const char* name;
+  const char* component;
+  const char* type;
+  const char* unit;
+};
+constexpr std::array<Channel, 8> kPoseChannels = {{{"time", "n/a", "LATENCY", "s"},
+                                                   {"tip_pos_x", "x", "POS", "m"},
+                                                   {"tip_pos_y", "y", "POS", "m"},
+                                                   {"tip_pos_z", "z", "POS", "m"},
+                                                   {"tip_quat_x", "quat_x", "ORNT", "n/a"},
+                                                   {"tip_quat_y", "quat_y", "ORNT", "n/a"},
+                                                   {"tip_quat_z", "quat_z", "ORNT", "n/a"},
+                                                   {"tip_quat_w", "quat_w", "ORNT", "n/a"}}};
+constexpr std::array<Channel, 2> kGripChannels = {{{"grip_angle", "n/a", "MISC", "rad"}, {"grip_force", "n/a", "MISC", "N"}}};
+constexpr std::array<Channel, 2> kRawChannels = {{{"raw_angle", "n/a", "MISC", "n/a"}, {"raw_force", "n/a", "MISC", "n/a"}}};
+
+/// Labels are letters and digits only.
+std::string label(const std::string& text, const std::string& otherwise) {
+  std::string out;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c))) out += c;
+  return out.empty() ? otherwise : out;
+}
+
+class TextOut {
+ public:
+  TextOut(const fs::path& path, std::vector<std::string>& written, bool append = false)
+      : path_(path.string()), stream_(path, append ? std::ios::app : std::ios::trunc) {
+    if (!stream_) fail();
+    if (std::find(written.begin(), written.end(), path_) == written.end()) written.push_back(path_);
+  }
+  ~TextOut() noexcept(false) {
+    if (std::uncaught_exceptions() > 0) return;
+    stream_.close();
+    if (!stream_) fail();
+  }
+  TextOut& operator<<(const std::string& text) {
+    stream_ << text;
+    return *this;
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw InputError(path_, "export", "a write error", "a folder that can be written, with space left"); }
+  std::string path_;
+  std::ofstream stream_;
+};
+
+std::string number(double value) {
+  if (!std::isfinite(value)) return "n/a";
+  char text[32];
+  const auto result = std::to_chars(text, text + sizeof text, value);
+  return {text, result.ptr};
+}
+
+std::string row_of(const std::vector<double>& cells) {
+  std::string row;
+  for (const double cell : cells) row += (row.empty() ? "" : "\t") + number(cell);
+  return row + "\n";
+}
+
+void add_pose(std::vector<double>& cells, const Pose* X) {
+  for (int i = 0; i < 3; ++i) cells.push_back(X ? X->p[i] : kAbsent);
+  for (int i = 0; i < 4; ++i) cells.push_back(X ? X->q.coeffs()[i] : kAbsent);  // x y z w
+}
+
+/// Names of the files of one recording.
+struct Names {
+  fs::path root, motion;
+  std::string subject, session, prefix;  // "sub-P01_ses-..._task-tiphold"
+  Names(const RecordingMeta& meta, const std::string& folder) : root(folder) {
+    subject = "sub-" + label(meta.participant, "unknown");
+    session = "ses-" + label(meta.started_utc, "unknown");
+    prefix = subject + "_" + session + "_task-" + label(meta.task, "unknown");
+    motion = root / subject / session / "motion";
+  }
+};
+
+/// Rate of a series as it came: readings less one over the time between the first and the last. [Hz]
+struct Rate {
+  double first = kAbsent, last = kAbsent;
+  std::size_t n = 0;
+  void take(double t) {
+    if (n++ == 0) first = t;
+    last = t;
+  }
+  double value() const { return n > 1 && last > first ? static_cast<double>(n - 1) / (last - first) : 0.0; }
+};
+
+void write_channels(const Names& names, const std::string& system, const std::string& point, bool raw, std::vector<std::string>& written) {
+  TextOut out(names.motion / (names.prefix + "_tracksys-" + system + "_channels.tsv"), written);
+  out << "name\tcomponent\ttype\ttracked_point\tunits\n";
+  const auto put = [&](const Channel& c) {
+    out << std::string(c.name) + "\t" + c.component + "\t" + c.type + "\t" + point + "\t" + c.unit + "\n";
+  };
+  for (const Channel& c : kPoseChannels) put(c);
+  for (const Channel& c : kGripChannels) put(c);
+  if (raw)
+    for (const Channel& c : kRawChannels) put(c);
+}
+
+void write_sidecar(const Names& names, const std::string& system, const RecordingMeta& meta, const Rate& rate, bool hand,
+                   std::vector<std::string>& written) {
+  const int misc = hand ? 4 : 2;
+  const Json json = {{"TaskName", meta.task},
+                     {"TaskDescription", "Task of the microsurgery trainer Filum"},
+                     {"TrackingSystemName", system},
+                     {"SamplingFrequency", hand ? rate.value() : (meta.dt > 0.0 ? 1.0 / meta.dt : 0.0)},
+                     {"SamplingFrequencyEffective", rate.value()},
+                     {"MotionChannelCount", 8 + misc},
+                     {"LATENCYChannelCount", 1},
+                     {"POSChannelCount", 3},
+                     {"ORNTChannelCount", 4},
+                     {"MISCChannelCount", misc},
+                     {"TrackedPointsCount", 1},
+                     {"MissingValues", "n/a"},
+                     {"Manufacturer", hand ? meta.input : "Filum"},
+                     {"SoftwareVersions", meta.program},
+                     {"SpatialAxes", "RAS"},
+                     {"RotationOrder", "n/a"},
+                     {"RotationRule", "right-hand"},
+                     {"RecordingDuration", rate.n > 1 ? rate.last - rate.first : 0.0}};
+  TextOut(names.motion / (names.prefix + "_tracksys-" + system + "_motion.json"), written) << json.dump(2) + "\n";
+}
+
+void finish_system(const Names& names, const std::string& system, const RecordingMeta& meta, const Rate& rate, bool hand,
+                   std::vector<std::string>& written) {
+  write_channels(names, system, "tip", hand, written);
+  write_sidecar(names, system, meta, rate, hand, written);
+}
+
+void write_hand(const RecordingReader& recording, const Names& names, int tool, std::vector<std::string>& written) {
+  const std::string system = "hand" + std::to_string(tool);
+  Rate rate;
+  {
+    std::unique_ptr<TextOut> out;  // only where there are readings
+    SampleRecord s;
+    std::int64_t start = 0;
+    for (auto cursor = recording.samples(); cursor.next(s);) {
+      if (s.tool != tool) continue;
+      if (!out) {
+        out = std::make_unique<TextOut>(names.motion / (names.prefix + "_tracksys-" + system + "_motion.tsv"), written);
+        start = s.device_time_us;
+      }
+      std::vector<double> cells{1e-6 * static_cast<double>(s.device_time_us - start)};
+      rate.take(cells.front());
+      add_pose(cells, s.has_pose ? &s.X_WD : nullptr);
+      cells.push_back(s.has_grip_angle ? s.grip_angle : kAbsent);
+      cells.push_back(s.has_grip_force ? s.grip_force : kAbsent);
+      cells.push_back(s.raw_angle);
+      cells.push_back(s.raw_force);
+      *out << row_of(cells);
+    }
+    if (!out) return;
+  }
+  finish_system(names, system, recording.meta(), rate, true, written);
+}
+
+void write_scene(const RecordingReader& recording, const Names& names, int tool, std::vector<std::string>& written) {
+  const std::string system = "scene" + std::to_string(tool);
+  const RecordingMeta& meta = recording.meta();
+  Rate rate;
+  {
+    TextOut out(names.motion / (names.prefix + "_tracksys-" + system + "_motion.tsv"), written);
+    StepRecord record;
+    for (auto cursor = recording.steps(); cursor.next(record);) {
+      const ToolInput& in = record.inputs.tools[static_cast<std::size_t>(tool)];
+      std::vector<double> cells{static_cast<double>(record.step) * meta.dt};
+      rate.take(cells.front());
+      add_pose(cells, in.valid ? &in.X_WD : nullptr);
+      cells.push_back(in.valid ? in.grip_angle : kAbsent);
+      cells.push_back(in.has_grip_force ? in.grip_force : kAbsent);
+      out << row_of(cells);
+    }
+  }
+  finish_system(names, system, meta, rate, false, written);
+}
+
+void write_events(const RecordingReader& recording, const Names& names, std::vector<std::string>& written) {
+  {
+    TextOut out(names.motion / (names.prefix + "_events.tsv"), written);
+    out << "onset\tduration\ttrial_type\ttool\tmeasured\tunit\n";
+    EventRecord e;
+    for (auto cursor = recording.events(); cursor.next(e);) {
+      const std::string unit(e.unit.view());
+      out << number(e.time) + "\t0\t" + std::string(e.name.view()) + "\t" + (e.tool < 0 ? "n/a" : std::to_string(e.tool)) + "\t" +
+                 number(e.value) + "\t" + (unit == "-" || unit.empty() ? "n/a" : unit) + "\n";
+    }
+  }
+  const Json json = {{"trial_type", {{"LongName", "Event"}, {"Description", "What happened in the scene, the task or to a device"}}},
+                     {"tool", {{"Description", "Index of the tool, n/a for none"}}},
+                     {"measured", {{"Description", "What the event measured, in the unit of the next column"}}},
+                     {"unit", {{"Description", "Unit of the column measured"}}}};
+  TextOut(names.motion / (names.prefix + "_events.json"), written) << json.dump(2) + "\n";
+}
+
+/// Adds a row to a table that several recordings share, once.
+void add_row(const fs::path& path, const std::string& head, const std::string& row, std::vector<std::string>& written) {
+  std::string text;
+  if (std::ifstream before(path); before) text.assign(std::istreambuf_iterator<char>(before), {});
+  if (text.empty()) text = head + "\n";
+  if (text.find("\n" + row + "\n") == std::string::npos) text += row + "\n";
+  TextOut(path, written) << text;
+}
+
+void write_dataset(const Names& names, const RecordingMeta& meta, std::vector<std::string>& written) {
+  const Json description = {{"Name", "Recordings of the microsurgery trainer Filum"},
+                            {"BIDSVersion", "1.9.0"},
+                            {"DatasetType", "raw"},
+                            {"License", "n/a"},
+                            {"Authors", {"not given"}},
+                            {"GeneratedBy", {{{"Name", "filum export"}, {"Version", meta.program}}}}};
+  TextOut(names.root / "dataset_description.json", written) << description.dump(2) + "\n";
+  TextOut(names.root / "README", written)
+      << "Recordings of a microsurgery trainer. Tracking systems hand0, hand1, ... are the readings of the devices in the\n"
+         "hand's space, times in their LATENCY channel, nothing filled in; scene0, scene1, ... are the poses commanded in the\n"
+         "simulated scene after clutch and motion scaling. The origin of both is the middle of the field, x to the right, y\n"
+         "away from the trainee, z up. grip_force is in newton, raw_angle and raw_force are the converter's counts.\n";
+  add_row(names.root / "participants.tsv", "participant_id\tcode", names.subject + "\t" + (meta.participant.empty() ? "n/a" : meta.participant), written);
+  TextOut(names.root / "participants.json", written)
+      << Json({{"code", {{"Description", "Code of the participant in the trainer; never a name"}}}}).dump(2) + "\n";
+}
+
+}  // namespace
+
+std::vector<std::string> export_bids(const RecordingReader& recording, const std::string& folder) {
+  const RecordingMeta& meta = recording.meta();
+  const Names names(meta, folder);
+  std::error_code error;
+  fs::create_directories(names.motion, error);
+  if (!fs::is_directory(names.motion)) throw InputError(folder, "export", error.message(), "a folder that can be made");
+  std::vector<std::string> written;
+  write_dataset(names, meta, written);
+  for (int tool = 0; tool < 3; ++tool) write_hand(recording, names, tool, written);
+  for (int tool = 0; tool < meta.n_tools; ++tool) write_scene(recording, names, tool, written);
+  write_events(recording, names, written);
+  const fs::path scans = names.root / names.subject / names.session / (names.subject + "_" + names.session + "_scans.tsv");
+  const std::string when = meta.started_utc.empty() ? "n/a" : meta.started_utc;
+  for (const std::string& file : std::vector<std::string>(written)) {
+    if (!file.ends_with("_motion.tsv")) continue;
+    add_row(scans, "filename\tacq_time", "motion/" + fs::path(file).filename().string() + "\t" + when, written);
+  }
+  return written;
+}
+
+}  // namespace filum

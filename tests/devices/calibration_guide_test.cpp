@@ -1,0 +1,43 @@
+#include "devices/calibration_guide.h"
+
+#include <gtest/gtest.h>
+
+namespace filum {
+namespace {
+
+TEST(CalibrationGuide, GoesUpAndDownAndAveragesHalfASecond) {
+  CalibrationGuide guide(CalibrationGuide::Channel::force, {0.0, 0.5, 1.0}, 2);
+  std::vector<double> asked;
+  while (!guide.done()) {
+    asked.push_back(guide.value());
+    EXPECT_NE(guide.instruction().find("Load the pad"), std::string::npos);
+    guide.begin();
+    for (std::size_t k = 0; guide.reading(); ++k) {
+      DeviceSample s;
+      s.has_grip_force = true;
+      s.raw_force = 1000 + static_cast<int>(asked.size()) + (k % 2 == 0 ? 1 : -1);
+      guide.take(s);
+    }
+  }
+  EXPECT_EQ(asked, (std::vector<double>{0, 0.5, 1, 1, 0.5, 0, 0, 0.5, 1, 1, 0.5, 0}));
+  ASSERT_EQ(guide.points().size(), 12u);
+  EXPECT_NEAR(guide.points()[4].count, 1005.0, 1e-9);
+  EXPECT_NEAR(guide.points()[4].noise, 1.0, 1e-2);
+  EXPECT_FALSE(guide.points()[4].upwards);
+  EXPECT_TRUE(guide.instruction().empty());
+}
+
+TEST(CalibrationGuide, ABrokenWireGivesNoReading) {
+  CalibrationGuide guide(CalibrationGuide::Channel::angle, {0.0}, 1);
+  guide.begin();
+  DeviceSample broken;
+  broken.raw_angle = 4092;
+  for (int k = 0; k < 2000; ++k) guide.take(broken);
+  EXPECT_TRUE(guide.reading());
+  guide.again();
+  EXPECT_FALSE(guide.reading());
+  EXPECT_TRUE(guide.points().empty());
+}
+
+}  // namespace
+}  // namespace filum

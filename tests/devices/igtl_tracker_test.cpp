@@ -1,0 +1,184 @@
+#include "devices/igtl_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "base/error.h"
+#include "devices/igtl_stream.h"
+
+namespace filum {
+namespace {
+
+Pose pose_at(double x) {
+  Pose X;
+  X.p = Vec3(x, -0.02, 0.03);
+  X.q = Quat(Eigen::AngleAxisd(0.7, Vec3(1, -2, 3).normalized()));
+  return X;
+}
+
+std::vector<std::uint8_t> transform(const std::string& name, const Pose& X, std::int64_t time_us = 5'250'000) {
+  std::vector<std::uint8_t> bytes(kIgtlTransform);
+  EXPECT_EQ(igtl_transform(name, X, time_us, bytes), kIgtlTransform);
+  return bytes;
+}
+
+void put(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint64_t v, int n) {
+  for (int i = n - 1; i >= 0; --i, v >>= 8) bytes[at + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(v);
+}
+
+/// With the body's size and checksum set right.
+std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> bytes) {
+  put(bytes, 42, bytes.size() - kIgtlHeader, 8);
+  put(bytes, 50, igtl_crc64(std::span(bytes).subspan(kIgtlHeader)), 8);
+  return bytes;
+}
+
+/// A TDATA message of the named tools.
+std::vector<std::uint8_t> tdata(const std::vector<std::string>& names) {
+  std::vector<std::uint8_t> bytes = transform("Tracker", {});
+  bytes.resize(kIgtlHeader);
+  std::memset(bytes.data() + 2, 0, 12);
+  std::memcpy(bytes.data() + 2, "TDATA", 5);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto one = transform("x", pose_at(0.001 * static_cast<double>(k + 1)));
+    std::vector<std::uint8_t> element(22, 0);
+    std::memcpy(element.data(), names[k].data(), names[k].size());
+    element.insert(element.end(), one.begin() + kIgtlHeader, one.end());
+    bytes.insert(bytes.end(), element.begin(), element.end());
+  }
+  return sealed(bytes);
+}
+
+struct Fed {
+  IgtlTracker tracker;
+  std::vector<DeviceSample> samples;
+  bool give(const std::vector<std::uint8_t>& bytes) { return tracker.feed(bytes, 1000, samples); }
+};
+
+TEST(IgtlTracker, ATransformIsAPoseInMetres) {
+  Fed f;
+  ASSERT_TRUE(f.give(transform("Tool1ToReference", pose_at(0.01))));
+  ASSERT_EQ(f.samples.size(), 1u);
+  EXPECT_EQ(f.samples[0].tool, 1);
+  EXPECT_LT((f.samples[0].X_WD.p - pose_at(0.01).p).norm(), 1e-8);
+  EXPECT_GT(std::abs(f.samples[0].X_WD.q.dot(pose_at(0.01).q)), 1.0 - 1e-7);
+  EXPECT_EQ(f.samples[0].device_time_us, 5'250'000 - 1 + 1);
+}
+
+TEST(IgtlTracker, AToolThatIsNotInTheMessageIsADropout) {
+  Fed f;
+  f.give(tdata({"Tool0", "tool1", "Stylus"}));
+  ASSERT_EQ(f.samples.size(), 2u);
+  f.give(tdata({"tool1"}));
+  ASSERT_EQ(f.samples.size(), 3u);
+  EXPECT_EQ(f.samples[2].tool, 1);
+  f.give(tdata({}));
+  EXPECT_EQ(f.samples.size(), 3u) << "nothing is held";
+}
+
+TEST(IgtlTracker, BytesMayComeInAnyPieces) {
+  std::vector<std::uint8_t> stream;
+  for (int k = 0; k < 20; ++k) {
+    const auto one = k % 2 ? tdata({"Tool0", "Tool2"}) : transform("TOOL1", pose_at(0.001 * k));
+    stream.insert(stream.end(), one.begin(), one.end());
+  }
+  for (const std::size_t piece : {1u, 7u, 57u, 58u, 59u, 4000u}) {
+    Fed f;
+    for (std::size_t at = 0; at < stream.size(); at += piece)
+      ASSERT_TRUE(f.tracker.feed(std::span(stream).subspan(at, std::min(piece, stream.size() - at)), 0, f.samples));
+    EXPECT_EQ(f.samples.size(), 30u) << piece;
+  }
+}
+
+TEST(IgtlTracker, DamageIsCountedAndTheNextMessageIsRead) {
+  Fed f;
+  auto bad = transform("Tool0", pose_at(0.01));
+  bad[80] ^= 4;
+  ASSERT_TRUE(f.give(bad));
+  EXPECT_TRUE(f.samples.empty());
+  EXPECT_EQ(f.tracker.health().corrupt, 1u);
+  f.give(transform("Tool0", pose_at(0.01)));
+  EXPECT_EQ(f.samples.size(), 1u);
+}
+
+TEST(IgtlTracker, WhatIsNoRotationOrOutOfReachIsRefused) {
+  Fed f;
+  Pose far = pose_at(0.6);
+  f.give(transform("Tool0", far));
+  auto sheared = transform("Tool0", pose_at(0.01));
+  put(sheared, kIgtlHeader, std::bit_cast<std::uint32_t>(3.0f), 4);
+  f.give(sealed(sheared));
+  auto nan = transform("Tool0", pose_at(0.01));
+  put(nan, kIgtlHeader + 36, std::bit_cast<std::uint32_t>(std::numeric_limits<float>::quiet_NaN()), 4);
+  f.give(sealed(nan));
+  auto mirrored = transform("Tool0", Pose{});
+  put(mirrored, kIgtlHeader, std::bit_cast<std::uint32_t>(-1.0f), 4);
+  f.give(sealed(mirrored));
+  EXPECT_TRUE(f.samples.empty());
+  EXPECT_EQ(f.tracker.health().rejected, 4u);
+}
+
+TEST(IgtlTracker, LengthsThatLieAreSurvived) {
+  Fed f;
+  auto image = transform("Camera", {});
+  std::memset(image.data() + 2, 0, 12);
+  std::memcpy(image.data() + 2, "IMAGE", 5);
+  image.resize(kIgtlHeader + 100'000);
+  ASSERT_TRUE(f.give(sealed(image))) << "skipped without being kept";
+  f.give(transform("Tool0", pose_at(0.01)));
+  EXPECT_EQ(f.samples.size(), 1u);
+  auto endless = transform("Tool0", {});
+  put(endless, 42, ~0ull, 8);
+  EXPECT_FALSE(f.give(endless)) << "the peer is dropped";
+}
+
+TEST(IgtlTracker, NoBytesCrashIt) {
+  std::mt19937 random(5);
+  for (int run = 0; run < 300; ++run) {
+    Fed f;
+    auto bytes = tdata({"Tool0", "Tool1"});
+    for (int k = 0; k < 6; ++k) bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+    f.give(bytes);
+    for (const DeviceSample& s : f.samples) ASSERT_TRUE(s.X_WD.finite());
+  }
+}
+
+TEST(IgtlStream, OnePeerHearsTheToolsAndASecondIsTurnedAway) {
+  IgtlStream stream("127.0.0.1", 0);
+  IgtlTracker first("127.0.0.1", stream.port()), second("127.0.0.1", stream.port());
+  std::vector<DeviceSample> heard, other;
+  std::int64_t now = 0;
+  for (int k = 0; k < 2000 && heard.size() < 50; ++k, now += 1000) {
+    first.poll(now, heard);
+    if (stream.has_peer()) second.poll(now, other);
+    stream.send(2, pose_at(0.01), now);
+  }
+  ASSERT_GE(heard.size(), 50u);
+  EXPECT_EQ(heard[0].tool, 2);
+  EXPECT_LT((heard[0].X_WD.p - pose_at(0.01).p).norm(), 1e-8);
+  EXPECT_EQ(first.health().state, DeviceState::live);
+  EXPECT_TRUE(other.empty());
+}
+
+TEST(IgtlStream, APeerThatReadsNothingDoesNotStopIt) {
+  IgtlStream stream("127.0.0.1", 0);
+  IgtlTracker silent("127.0.0.1", stream.port());
+  std::vector<DeviceSample> none;
+  silent.poll(0, none);
+  for (int k = 0; k < 200'000 && stream.dropped() == 0; ++k) stream.send(0, pose_at(0.01), k);
+  EXPECT_GT(stream.dropped(), 0u);
+}
+
+TEST(IgtlTracker, AddressesAreNamedInTheRefusal) {
+  EXPECT_THROW(IgtlTracker("nowhere", 18944), InputError);
+  EXPECT_THROW(IgtlTracker("127.0.0.1", 0), InputError);
+  EXPECT_THROW(IgtlStream("127.0.0.1", 70000), InputError);
+}
+
+}  // namespace
+}  // namespace filum

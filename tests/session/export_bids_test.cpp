@@ -1,0 +1,98 @@
+// Motion-BIDS from a recording: the files, their columns and what is absent. The check by bids-validator itself is run where
+// FILUM_BIDS_VALIDATOR names the program (npm package bids-validator; 700 MB with what it needs).
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "session/export.h"
+#include "tests/session/synthetic.h"
+
+namespace filum {
+namespace {
+
+namespace fs = std::filesystem;
+
+void record(const std::string& file, const std::string& participant, const std::string& started) {
+  RecorderOptions o;
+  o.file = file;
+  o.meta.program = "filum test";
+  o.meta.task = "tip-hold";
+  o.meta.participant = participant;
+  o.meta.started_utc = started;
+  o.meta.input = "serial /dev/ttyACM0";
+  o.meta.dt = 0.002;
+  o.meta.n_tools = 1;
+  Recorder recorder(o);
+  for (std::uint64_t i = 1; i <= 200; ++i) {
+    recorder.record_step(synthetic::step(i));
+    for (std::uint64_t k = 2 * i; k < 2 * i + 2; ++k) {
+      SampleRecord sample = synthetic::sample(k);
+      sample.tool = 0;
+      recorder.record_sample(sample);
+    }
+    if (i % 50 == 0) recorder.record_event(synthetic::event(i));
+  }
+  ASSERT_TRUE(recorder.close()) << recorder.status().message;
+}
+
+std::vector<std::string> lines_of(const fs::path& path) {
+  std::ifstream stream(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::size_t cells(const std::string& line) { return 1 + static_cast<std::size_t>(std::count(line.begin(), line.end(), '\t')); }
+
+TEST(ExportBids, WritesOneTrackingSystemForHandAndScene) {
+  synthetic::Folder folder;
+  record(folder.file("a.rec"), "P_01", "2026-11-21T09:30:00Z");
+  const auto files = export_bids(RecordingReader(folder.file("a.rec")), folder.file("set"));
+  EXPECT_GE(files.size(), 13u);
+  const fs::path motion = folder.path() / "set/sub-P01/ses-20261121T093000Z/motion";
+  const std::string prefix = "sub-P01_ses-20261121T093000Z_task-tiphold";
+  for (const std::string system : {"hand0", "scene0"}) {
+    const auto rows = lines_of(motion / (prefix + "_tracksys-" + system + "_motion.tsv"));
+    const auto channels = lines_of(motion / (prefix + "_tracksys-" + system + "_channels.tsv"));
+    ASSERT_EQ(rows.size(), system == "hand0" ? 400u : 200u);
+    EXPECT_EQ(channels.front(), "name\tcomponent\ttype\ttracked_point\tunits");
+    for (const std::string& row : rows) ASSERT_EQ(cells(row), channels.size() - 1) << "a column for each channel, no header";
+    std::ifstream side(motion / (prefix + "_tracksys-" + system + "_motion.json"));
+    const auto json = nlohmann::json::parse(side);
+    EXPECT_EQ(json["TaskName"], "tip-hold");
+    EXPECT_EQ(json["MotionChannelCount"], channels.size() - 1);
+    EXPECT_NEAR(json["SamplingFrequency"].get<double>(), system == "hand0" ? 1000.0 : 500.0, 1e-6);
+  }
+  const auto hand = lines_of(motion / (prefix + "_tracksys-hand0_motion.tsv"));
+  EXPECT_NE(hand[1].find("n/a"), std::string::npos) << "what was not measured is n/a, not zero";
+  EXPECT_EQ(lines_of(motion / (prefix + "_events.tsv")).size(), 5u);
+  EXPECT_EQ(lines_of(folder.path() / "set/sub-P01/ses-20261121T093000Z/sub-P01_ses-20261121T093000Z_scans.tsv").size(), 3u);
+}
+
+TEST(ExportBids, RecordingsJoinOneDatasetAndTwiceIsOnce) {
+  synthetic::Folder folder;
+  record(folder.file("a.rec"), "P01", "2026-11-21T09:30:00Z");
+  record(folder.file("b.rec"), "P02", "2026-11-21T10:30:00Z");
+  for (const char* name : {"a.rec", "b.rec", "a.rec"}) export_bids(RecordingReader(folder.file(name)), folder.file("set"));
+  EXPECT_EQ(lines_of(folder.path() / "set/participants.tsv").size(), 3u);
+}
+
+TEST(ExportBids, TheValidatorFindsNoErrors) {
+  const char* validator = std::getenv("FILUM_BIDS_VALIDATOR");
+  if (!validator) GTEST_SKIP() << "set FILUM_BIDS_VALIDATOR to the program of the npm package bids-validator to run this";
+  synthetic::Folder folder;
+  record(folder.file("a.rec"), "P01", "2026-11-21T09:30:00Z");
+  export_bids(RecordingReader(folder.file("a.rec")), folder.file("set"));
+  const std::string report = folder.file("report.json");
+  const std::string command = std::string("'") + validator + "' --json '" + folder.file("set") + "' > '" + report + "' 2>/dev/null";
+  (void)std::system(command.c_str());
+  std::ifstream stream(report);
+  const auto json = nlohmann::json::parse(stream);
+  EXPECT_TRUE(json["issues"]["errors"].empty()) << json["issues"]["errors"].dump(1);
+}
+
+}  // namespace
+}  // namespace filum
