@@ -9,7 +9,12 @@ namespace {
 
 constexpr int kMostHalvings = 14;
 constexpr int kMostRounds = 4;  // of contact prediction in a Newton step
+constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
 constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
+
+/// How much of the way the normal forces that friction goes by move in an iteration: all of it at first; but in a knot they can swing
+/// between two values for ever, which averaging ends.
+double load_share(int iteration) noexcept { return iteration < 4 ? 1.0 : iteration < 8 ? 0.5 : 0.25; }
 
 double node_span(const RodState& s, int i) noexcept {
   double l = 0.0;
@@ -59,16 +64,16 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
   for (;; ++summary.iterations) {
     summary.arrived = advance_boundary(s);
     update_geometry(s, x_, theta_, geometry_);
-    contact_.update(x_, material.radius, contact_material);
-    obstacles.update(x_, material.radius, contact_material);
+    const double share = load_share(summary.iterations);
+    contact_.update(x_, material.radius, contact_material, share);
+    obstacles.update(x_, material.radius, contact_material, share);
     assemble_gradient(s, o);
     summary.residual = gradient_.leftCols(s.n).topRows<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     const double moment = gradient_.leftCols(s.n).row(3).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / material.radius;
     if (!std::isfinite(summary.residual + moment)) break;
     summary.converged = summary.arrived && std::max(summary.residual, 0.1 * moment) < std::max(o.force_tolerance, o.relative_tolerance * force_scale(s));
     if (summary.converged || summary.iterations == o.max_iterations) break;
-    if (!direction(s, o, summary)) break;
-    advance(s, memory, o);
+    if (!newton_step(s, memory, o, summary)) break;
   }
   restore_rest(s);
   summary.crowded = contact_.overflowed();
@@ -133,13 +138,14 @@ void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodS
 
 /// Fraction of move_ that crosses nothing; finds the near pairs again if the move reaches beyond those known.
 double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept {
-  if (travelled_ + length > reach_) {
-    find_near(s, memory, std::max(length, 2.0 * material.radius));
+  double fraction = 1.0;
+  if (self_contact && length > kLongestReach * material.radius) fraction = kLongestReach * material.radius / length;
+  if (travelled_ + fraction * length > reach_) {
+    find_near(s, memory, std::max(fraction * length, 2.0 * material.radius));
     contact_.update(x_, material.radius, contact_material);
     obstacles.update(x_, material.radius, contact_material);
   }
-  double fraction = 1.0;
-  if (self_contact) fraction = contact_.free_fraction(x_, move_, material.radius);
+  if (self_contact) fraction = std::min(fraction, contact_.free_fraction(x_, move_, material.radius));
   return std::min(fraction, obstacles.free_fraction(x_, move_, material.radius));
 }
 
@@ -255,43 +261,62 @@ double ImplicitRod::force_scale(const RodState& s) const noexcept {
   return scale;
 }
 
-/// Newton direction; solved again while it leads into contacts that the matrix does not know yet.
-bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, RodStepSummary& summary) noexcept {
-  Stiffness kind = Stiffness::exact;
-  for (int round = 0; round < kMostRounds;) {
+/// move_ from the stiffness with the springs of the contacts expected now; the exact one where it can be factorised and does not
+/// throw nodes about, else that of Gauss and Newton (compressed strands make it so).
+bool ImplicitRod::solve_direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept {
+  for (;;) {
     assemble_stiffness(s, o, kind);
     move_.leftCols(s.n) = -gradient_.leftCols(s.n);
     if (self_contact) contact_.add_expected(material.radius, contact_material, chain_, move_, matrix_);
     obstacles.add_expected(contact_material, chain_, move_, matrix_);
-    if (!matrix_.factor()) {
-      if (kind == Stiffness::gauss_newton) return false;
-      kind = Stiffness::gauss_newton;
-      ++summary.fallbacks;
-      continue;
+    const bool factored = matrix_.factor();
+    double length = 0.0;
+    if (factored) {
+      matrix_.solve(move_.leftCols(s.n));
+      length = largest_move(move_, s.n);
+      if (length <= o.longest_move || kind == Stiffness::gauss_newton) {
+        if (length > o.longest_move) move_.leftCols(s.n) *= o.longest_move / length;
+        return true;
+      }
+    } else if (kind == Stiffness::gauss_newton) {
+      return false;
     }
-    matrix_.solve(move_.leftCols(s.n));
-    const double length = largest_move(move_, s.n);
-    if (length > o.longest_move && kind == Stiffness::exact) {  // compressed strands make it so
-      kind = Stiffness::gauss_newton;
-      ++summary.fallbacks;
-      continue;
-    }
-    if (length > o.longest_move) move_.leftCols(s.n) *= o.longest_move / length;
+    kind = Stiffness::gauss_newton;
+    ++summary.fallbacks;
+  }
+}
+
+/// Newton direction; solved again while it leads into contacts that the matrix does not know yet.
+bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept {
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (!solve_direction(s, o, kind, summary)) return false;
     const bool strands = self_contact && contact_.expect(move_, material.radius);
     const bool bodies = obstacles.expect(move_, material.radius);
     if (!strands && !bodies) break;
-    ++round;
   }
   return true;
 }
 
-void ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
+/// Newton step. Expected contacts that contradict each other can lead uphill; then the direction that knows of none is taken.
+bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o, RodStepSummary& summary) noexcept {
+  Stiffness kind = Stiffness::exact;
+  if (!direction(s, o, kind, summary)) return false;
+  if (advance(s, memory, o)) return true;
+  contact_.forget_expected();
+  obstacles.forget_expected();
+  if (!solve_direction(s, o, kind, summary)) return false;
+  if (!advance(s, memory, o)) try_move(s, std::ldexp(1.0, -kMostHalvings), std::numeric_limits<double>::infinity(), o);  // rounding
+  return true;
+}
+
+bool ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   const double slope = (gradient_.leftCols(s.n).array() * move_.leftCols(s.n).array()).sum();
+  if (!(slope < 0.0)) return false;
   double fraction = free_fraction(s, memory, largest_move(move_, s.n));
   const double before = energy(s, x_, theta_, o);
   for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5)
-    if (try_move(s, fraction, before + 1e-4 * fraction * slope, o)) return;
-  try_move(s, fraction, std::numeric_limits<double>::infinity(), o);  // at the limit of rounding
+    if (try_move(s, fraction, before + 1e-4 * fraction * slope, o)) return true;
+  return false;
 }
 
 double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept {

@@ -85,11 +85,13 @@ class ImplicitRod {
   void assemble_gradient(const RodState& s, const RodStepOptions& o) noexcept;
   void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
   double force_scale(const RodState& s) const noexcept;
-  bool direction(const RodState& s, const RodStepOptions& o, RodStepSummary& summary) noexcept;
+  bool solve_direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept;
+  bool direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept;
+  bool newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o, RodStepSummary& summary) noexcept;
   void predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   double free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept;
   bool try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept;
-  void advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
+  bool advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept;
   void finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept;
 

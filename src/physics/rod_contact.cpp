@@ -146,7 +146,7 @@ void RodContact::remember(std::vector<ContactBristle>& memory) const noexcept {
   }
 }
 
-void RodContact::update(const Points& x, double radius, const ContactMaterial& m) noexcept {
+void RodContact::update(const Points& x, double radius, const ContactMaterial& m, double share) noexcept {
   for (RodPair& p : pairs_) {
     const SegmentPair c = measure(x, p.i, p.j);
     p.s = c.s;
@@ -154,6 +154,7 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
     p.distance = c.distance;
     p.normal = c.d / c.distance;
     p.force = -pair_potential(c.distance, radius, m.stiffness).slope;
+    p.load += share * (p.force - p.load);
     p.expected = false;
   }
 }
@@ -162,7 +163,7 @@ double RodContact::energy(const Points& x, const Points& x_start, double radius,
   double u = 0.0;
   for (const RodPair& p : pairs_) {
     u += pair_potential(measure(x, p.i, p.j).distance, radius, m.stiffness).energy;
-    if (p.force > 0.0) u += coulomb(trial_bristle(p, x, x_start), p.normal, p.force, m.friction, m.stick(m.friction, p.force)).energy;
+    if (p.force > 0.0) u += coulomb(trial_bristle(p, x, x_start), p.normal, p.load, m.friction, m.stick(m.friction, p.load)).energy;
   }
   return u;
 }
@@ -171,7 +172,7 @@ void RodContact::add_gradient(const Points& x, const Points& x_start, const Cont
                               Eigen::Matrix4Xd& gradient) noexcept {
   for (RodPair& p : pairs_) {
     if (p.force <= 0.0) continue;
-    p.friction = coulomb(trial_bristle(p, x, x_start), p.normal, p.force, m.friction, m.stick(m.friction, p.force));
+    p.friction = coulomb(trial_bristle(p, x, x_start), p.normal, p.load, m.friction, m.stick(m.friction, p.load));
     const Vec3 force = p.force * p.normal + p.friction.force;  // on the first edge
     const Weights w = weights(p);
     for (int a = 0; a < 4; ++a) gradient.col(w.node[a]).head<3>() -= w.w[a] * force;
@@ -210,6 +211,10 @@ void RodContact::add_block(const RodPair& p, const Mat3& k, const ChainSlots& ch
     for (int b = 0; b < 2; ++b) matrix.add(p.slots[2 * a + b], pad(w.w[a] * w.w[2 + b] * k));
   matrix.add(chain.next[p.i], pad(w.w[0] * w.w[1] * k));
   matrix.add(chain.next[p.j], pad(w.w[2] * w.w[3] * k));
+}
+
+void RodContact::forget_expected() noexcept {
+  for (RodPair& p : pairs_) p.expected = false;
 }
 
 bool RodContact::expect(const Eigen::Matrix4Xd& move, double radius) noexcept {

@@ -45,6 +45,7 @@ struct RodPair {
   Vec3 normal = Vec3::UnitX();        // unit, from edge j to edge i
   double distance = 1;                // [m], of the axes
   double force = 0;                   // [N], normal
+  double load = 0;                    // [N], normal force by which friction goes in this iteration
   bool expected = false;              // not touching yet, but would after the Newton step
   Vec3 xi_start = Vec3::Zero();       // [m], bristle at the start of the step
   FrictionPoint friction;
@@ -70,8 +71,9 @@ class RodContact {
   /// Writes the bristles of touching pairs for the next step (capacity reserved by the caller).
   void remember(std::vector<ContactBristle>& memory) const noexcept;
 
-  /// Distances, normals and normal forces at x; the normal force then stays fixed in energy() until the next call.
-  void update(const Points& x, double radius, const ContactMaterial& m) noexcept;
+  /// Distances, normals and normal forces at x; friction goes by a load that moves by `share` of the way to the normal force
+  /// and then stays fixed in energy() until the next call.
+  void update(const Points& x, double radius, const ContactMaterial& m, double share = 1.0) noexcept;
   /// Potential [J] at x (friction with the normal forces of the last update).
   double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept;
   /// Adds the gradient, then the stiffness, at the configuration of the last update.
@@ -83,6 +85,7 @@ class RodContact {
   /// would part again are not. True if the set changed. Without this a strand could only creep up on another one, halving the
   /// gap with every Newton step.
   bool expect(const Eigen::Matrix4Xd& move, double radius) noexcept;
+  void forget_expected() noexcept;
   /// Adds the springs of the expected pairs, at rest at the surface, to the right-hand side and the matrix.
   void add_expected(double radius, const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
                     BlockCholesky& matrix) const noexcept;

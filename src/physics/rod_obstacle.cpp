@@ -141,10 +141,11 @@ Vec3 RodObstacles::trial_bristle(const ObstacleTouch& t, const Points& x, const 
   return xi - xi.dot(t.normal) * t.normal;
 }
 
-void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m) noexcept {
+void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m, double share) noexcept {
   for (ObstacleTouch& t : touches_) {
     measure(x, radius, t);
     t.force = t.gap < 0.0 ? -m.wall_ratio * m.stiffness * t.gap : 0.0;
+    t.load += share * (t.force - t.load);
     t.expected = false;
   }
 }
@@ -156,7 +157,7 @@ double RodObstacles::energy(const Points& x, const Points& x_start, double radiu
     measure(x, radius, trial);
     u += wall_energy(trial.gap, m.wall_ratio * m.stiffness);
     const double mu = obstacles[static_cast<std::size_t>(t.obstacle)].friction;
-    if (t.force > 0.0) u += coulomb(trial_bristle(t, x, x_start), t.normal, t.force, mu, m.stick(mu, t.force)).energy;
+    if (t.force > 0.0) u += coulomb(trial_bristle(t, x, x_start), t.normal, t.load, mu, m.stick(mu, t.load)).energy;
   }
   return u;
 }
@@ -167,7 +168,7 @@ void RodObstacles::add_gradient(const Points& x, const Points& x_start, double r
   for (ObstacleTouch& t : touches_) {
     if (t.force <= 0.0) continue;
     const Obstacle& o = obstacles[static_cast<std::size_t>(t.obstacle)];
-    t.friction = coulomb(trial_bristle(t, x, x_start), t.normal, t.force, o.friction, m.stick(o.friction, t.force));
+    t.friction = coulomb(trial_bristle(t, x, x_start), t.normal, t.load, o.friction, m.stick(o.friction, t.load));
     const Vec3 on_thread = t.force * t.normal + t.friction.force;
     gradient.col(t.edge).head<3>() -= (1.0 - t.s) * on_thread;
     gradient.col(t.edge + 1).head<3>() -= t.s * on_thread;
@@ -194,6 +195,10 @@ void RodObstacles::add_stiffness(const Points& x, double radius, const ContactMa
     matrix.add_diagonal(t.edge + 1, block);
     matrix.add(chain.next[t.edge], -block);
   }
+}
+
+void RodObstacles::forget_expected() noexcept {
+  for (ObstacleTouch& t : touches_) t.expected = false;
 }
 
 bool RodObstacles::expect(const Eigen::Matrix4Xd& move, double radius) noexcept {

@@ -33,7 +33,8 @@ struct ObstacleTouch {
   double s = 0, t = 0;                // along the edge, along the bar
   Vec3 normal = Vec3::UnitZ();        // unit, from the obstacle to the thread
   double gap = 1;                     // [m], between the surfaces
-  double force = 0;                   // [N]
+  double force = 0;                   // [N], normal
+  double load = 0;                    // [N], normal force by which friction goes in this iteration
   bool expected = false;              // see RodContact::expect
   Vec3 xi_start = Vec3::Zero();       // [m], turned with the body
   FrictionPoint friction;
@@ -54,13 +55,14 @@ class RodObstacles {
   /// Moves every body on towards X_end as far as the thread at x lets it without being jumped over. True when all are there.
   bool advance_bodies(const Points& x, double radius) noexcept;
 
-  void update(const Points& x, double radius, const ContactMaterial& m) noexcept;
+  void update(const Points& x, double radius, const ContactMaterial& m, double share = 1.0) noexcept;
   double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept;
   void add_gradient(const Points& x, const Points& x_start, double radius, const ContactMaterial& m,
                     Eigen::Matrix4Xd& gradient) noexcept;
   void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
                      BlockCholesky& matrix) const noexcept;
   bool expect(const Eigen::Matrix4Xd& move, double radius) noexcept;
+  void forget_expected() noexcept;
   void add_expected(const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs, BlockCholesky& matrix) const noexcept;
   double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;
 
