@@ -19,6 +19,7 @@ const std::map<std::string, std::vector<std::string>> kMayUse = {
     {"base", {}},
     {"collision", {"base"}},
     {"devices", {"base", "hardware"}},
+    {"tracker", {"base", "devices"}},
     {"physics", {"base", "collision"}},
     {"world", {"base", "collision", "physics"}},
     {"haptics", {"base", "world", "devices"}},

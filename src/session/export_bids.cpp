@@ -140,9 +140,6 @@ void write_sidecar(const Names& names, const std::string& system, const Recordin
                      {"MissingValues", "n/a"},
                      {"Manufacturer", hand ? meta.input : "Filum"},
                      {"SoftwareVersions", meta.program},
-                     {"SpatialAxes", "RAS"},
-                     {"RotationOrder", "n/a"},
-                     {"RotationRule", "right-hand"},
                      {"RecordingDuration", rate.n > 1 ? rate.last - rate.first : 0.0}};
   TextOut(names.motion / (names.prefix + "_tracksys-" + system + "_motion.json"), written) << json.dump(2) + "\n";
 }
@@ -239,7 +236,7 @@ void write_dataset(const Names& names, const RecordingMeta& meta, std::vector<st
       << "Recordings of a microsurgery trainer. Tracking systems hand0, hand1, ... are the readings of the devices in the\n"
          "hand's space, times in their LATENCY channel, nothing filled in; scene0, scene1, ... are the poses commanded in the\n"
          "simulated scene after clutch and motion scaling. The origin of both is the middle of the field, x to the right, y\n"
-         "away from the trainee, z up. grip_force is in newton, raw_angle and raw_force are the converter's counts.\n";
+         "away from the trainee, z up; rotations are right-handed quaternions. grip_force is in newton, raw_angle and raw_force are the converter's counts.\n";
   add_row(names.root / "participants.tsv", "participant_id\tcode", names.subject + "\t" + (meta.participant.empty() ? "n/a" : meta.participant), written);
   TextOut(names.root / "participants.json", written)
       << Json({{"code", {{"Description", "Code of the participant in the trainer; never a name"}}}}).dump(2) + "\n";
