@@ -27,8 +27,9 @@ const std::map<std::string, std::vector<std::string>> kMayUse = {
     {"session", {"base", "world"}},
     {"server", {"base", "world/observation.h", "training", "session"}},
     {"analysis", {"base", "training", "session"}},
+    {"reconcile", {"base"}},
     {"evidence", {"base", "collision", "physics", "world"}},
-    {"cli", {"base", "collision", "devices", "physics", "world", "haptics", "training", "session", "server", "analysis", "evidence"}},
+    {"cli", {"base", "reconcile", "collision", "devices", "physics", "world", "haptics", "training", "session", "server", "analysis", "evidence"}},
 };
 
 /// What is wrong with `#include "included"` in a file of `folder`; nothing if it is allowed.

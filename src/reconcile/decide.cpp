@@ -141,7 +141,7 @@ const Fit* choose(const Search& search, const Rules& rules) {
     const double needed = now == nullptr ? rules.accept_evidence : rules.pair_evidence;
     const bool enough = fall >= needed && (now != nullptr || (before.chi2 - next->chi2) / search.dispersion() >= rules.detect);
     const double share = search.explained(*next) - (now == nullptr ? 0.0 : search.explained(*now));
-    if (!enough || search.material(*next, before) < 1.0 || (now != nullptr && share < rules.pair_share)) {
+    if (!enough || search.material(*next, before) < 1.0 || (now != nullptr && share < rules.pair_share && search.material(*next, before) < rules.pair_material)) {
       if (now == nullptr) continue;  // two effects may cancel in the test of singles
       break;
     }

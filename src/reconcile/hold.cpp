@@ -19,6 +19,7 @@ struct Spectrum {
   double sigma = 1.0;                    // [m]
   double step = 1.0;
   int n = 0;
+  double rate = 1.0;                     // [Hz], of the samples
 };
 
 /// Of one record and output, residual of the polynomial. sigma <= 0: taken from the median of the bins above 1.5 Hz outside the tremor band.
@@ -30,6 +31,7 @@ Spectrum spectrum(const Eigen::VectorXd& residual, const Eigen::VectorXd& time, 
   s.n = static_cast<int>(n);
   const double span = (time[time.size() - 1] - time[0]) * static_cast<double>(n) / static_cast<double>(n - 1);
   s.step = 1.0 / span;
+  s.rate = static_cast<double>(n) / span;
   Eigen::FFT<double> fft;
   std::vector<std::complex<double>> out;
   fft.fwd(out, x);
@@ -120,7 +122,7 @@ void add_line(const Fitter& fitter, const Fit& base, const Form& form, double lo
   const Line line = strongest_line(fitter, base, low, high);
   if (line.gain < line.columns + 4.5 * std::sqrt(2.0 * line.columns) + 14.0) return;
   const double w = 2.5 * all[0].step;
-  const double rate = 2.0 * all[0].frequency.back();
+  const double rate = all[0].rate;
   double at = std::fmod(line.frequency, rate);  // where it appears when folded
   if (at > 0.5 * rate) at = rate - at;
   const double around = level(all, std::max(0.05, at - 12 * w), at + 12 * w);
@@ -250,8 +252,8 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     if (!f.line) continue;
     if (f.effect == Effect::mains_hum) {
       std::vector<Found> both;
-      add_line(fitter, fitted, f, 49.4, 50.6, all, both);
-      add_line(fitter, fitted, f, 59.4, 60.6, all, both);
+      add_line(fitter, fitted, f, 49.8, 50.2, all, both);
+      add_line(fitter, fitted, f, 59.8, 60.2, all, both);
       std::stable_sort(both.begin(), both.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
       if (!both.empty()) found.push_back(both[0]);
     } else {

@@ -14,11 +14,12 @@ struct Rules {
   double held_out = 0.50;            // the same on protocols that were not fitted
   double tie = 6.0;                  // rivals nearer than this in BIC are not told apart
   double pair_evidence = 12.0;       // fall of BIC that a further effect must bring
-  double pair_share = 0.05;          // of the structure that a further effect must explain
+  double pair_share = 0.05;          // of the structure that a further effect must explain, or
+  double pair_material = 2.0;        // times the materiality by which it must change the prediction
   double partial_structure = 6.0;    // standard deviations left, and
   double partial_share = 0.04;       // share left, both above: "partial"
   int most_effects = 3;
-  double masked = 0.97;              // share of a signature that the baseline's refit swallows: not testable
+  double masked = 0.999;             // share of a signature that the baseline's refit swallows: not testable
   double testable = 16.0;            // squared signal to noise (noise 1 % of full scale) below which an effect cannot be seen
   double screen_share = 0.20;        // of the best score: effects below are not fitted
   int screen_most = 8;

@@ -141,7 +141,7 @@ std::string clock_condition(const Dataset& d, Effect e) {
   }
   if (e == Effect::pulsation && (rate < 1.0 || span < 3.0)) return "records too short or sampled too slowly for a heart beat";
   if (e == Effect::physiological_tremor && rate < 17.0) return "sampled more slowly than twice 8 Hz";
-  if (e == Effect::mains_hum && span * rate < 24.0) return "too few samples";
+  if (e == Effect::mains_hum && (rate < 1.5 || span * rate < 24.0)) return "too few samples: sampled so slowly that 50 Hz folds onto anything";
   return "";
 }
 

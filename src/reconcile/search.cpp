@@ -66,14 +66,26 @@ void Search::fit_baseline() {
   base_ = fitter_.fit({}, loose.base, {}, {}, &loose);
 }
 
+/// Whether a line folded back by slow sampling still stands clear of what is slow in the records.
+bool Search::separate(double frequency) const {
+  for (const Trial& t : model_.data().trials) {
+    const double span = t.time[t.samples() - 1] - t.time[0], rate = (t.samples() - 1) / span;
+    double folded = std::fmod(frequency, rate);
+    folded = std::min(folded, rate - folded);
+    if (folded * span < 6.0) return false;
+  }
+  return true;
+}
+
 std::vector<Score> Search::lines(const Fit& from) const {
   std::vector<Score> out;
   for (const Form& f : forms_) {
     if (!f.line || std::any_of(from.forms.begin(), from.forms.end(), [&](const Form* g) { return g->effect == f.effect; })) continue;
     std::vector<std::pair<double, double>> bands = {{f.params[0].low, f.params[0].high}};
-    if (f.effect == Effect::mains_hum) bands = {{49.4, 50.6}, {59.4, 60.6}};
+    if (f.effect == Effect::mains_hum) bands = {{49.85, 50.15}, {59.85, 60.15}};
     for (const auto& [low, high] : bands) {
       const Line line = strongest_line(fitter_, from, low, high);
+      if (f.effect == Effect::mains_hum && !separate(line.frequency)) continue;
       const double expected = line.columns + 4.5 * std::sqrt(2.0 * line.columns) + 12.0;
       if (line.gain > expected) out.push_back({&f, {line.frequency}, line.gain, 1.0, line.gain, 0.0});
     }

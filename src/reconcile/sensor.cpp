@@ -34,8 +34,10 @@ void low_pass(const Eigen::VectorXd& time, double tau, Eigen::Ref<Eigen::VectorX
 void apply_lag(const Trial& t, const Setting& s, Eigen::MatrixXd& out) {
   const double* p = s.on(Effect::sensor_lag);
   if (p == nullptr) return;
+  const int kind = s.form(Effect::sensor_lag), only = kind / 2 - 1;  // -1: all outputs alike
   for (Eigen::Index c = 0; c < out.cols(); ++c) {
-    if (s.form(Effect::sensor_lag) == 0) {
+    if (only >= 0 && c != only) continue;
+    if (kind % 2 == 0) {
       Eigen::VectorXd v = out.col(c);
       low_pass(t.time, p[0], v);
       out.col(c) = v;
@@ -130,8 +132,12 @@ std::vector<Form> RigModel::sensor_forms() const {
   const double dt = median(steps), span = median(spans);
   if (clocked && has_scale()) {
     const std::vector<std::vector<double>> starts = {{dt}, {5 * dt}, {0.03 * span}};
-    out.push_back({Effect::sensor_lag, 0, "first-order low pass of the output", {{"time_constant", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
-    out.push_back({Effect::sensor_lag, 1, "pure delay of the output", {{"delay", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
+    for (int c = d.outputs.size() > 1 ? -1 : 0; c < static_cast<int>(d.outputs.size()); ++c) {
+      const int kind = d.outputs.size() > 1 ? 2 * (c + 1) : 0;
+      const std::string which = c < 0 || kind == 0 ? "all outputs" : d.outputs[static_cast<std::size_t>(c)];
+      out.push_back({Effect::sensor_lag, kind, "first-order low pass, " + which, {{"time_constant", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
+      out.push_back({Effect::sensor_lag, kind + 1, "pure delay, " + which, {{"delay", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
+    }
   }
   for (std::size_t c = 0; c < d.outputs.size(); ++c) {
     const std::string& name = d.outputs[c];

@@ -1,0 +1,92 @@
+#include "reconcile/importer.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "base/error.h"
+#include "reconcile/csv_table.h"
+#include "reconcile/report.h"
+
+namespace filum::reconcile {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSide = 5e-3;  // [m], the cube that stresses are turned into forces of
+
+std::string head(const std::string& title, const std::string& source, const std::string& free) {
+  return "format: filum-experiment/1\ntitle: \"" + title + "\"\nsource: \"" + source +
+         "\"\nrig: tissue-block\nspecimen: { shape: cuboid, length: \"5 mm\", width: \"5 mm\", height: \"5 mm\" }\nmodel:\n  file: brain/linear\n  free: [" + free +
+         "]\nchannels:\n  - { name: time, column: t_s, unit: s }\n  - { name: displacement, column: u_mm, unit: mm, kind: input }\n  - { name: force, column: F_mN, unit: mN, kind: output }\ntrials:\n";
+}
+
+/// t [s], displacement [m] and force [N] as a file of the contract; equal or falling times are left out.
+void write_trial(const fs::path& path, const Eigen::VectorXd& t, const Eigen::VectorXd& u, const Eigen::VectorXd& f) {
+  std::ostringstream s;
+  s << "t_s,u_mm,F_mN\n";
+  double last = -1e300;
+  for (Eigen::Index i = 0; i < t.size(); ++i) {
+    if (!(t[i] > last)) continue;
+    last = t[i];
+    char line[120];
+    std::snprintf(line, sizeof line, "%.7g,%.7g,%.7g\n", t[i], 1e3 * u[i], 1e3 * f[i]);
+    s << line;
+  }
+  write_whole(path.string(), s.str());
+}
+
+/// Specimen means without a clock: the sample's number stands for the time, so nothing about rate can be said.
+std::vector<std::string> brain(const std::string& folder, const std::string& out) {
+  std::vector<std::string> made;
+  for (const std::string region : {"cortex", "basal-ganglia", "corona-radiata", "corpus-callosum"}) {
+    const fs::path to = fs::path(out) / ("brain-" + region);
+    fs::create_directories(to);
+    std::string yaml = head("Human brain, " + region + ": tension, compression, shear (specimen means, no clock)",
+                            "Budday et al., Acta Biomaterialia 48 (2017) 319-340, digitised in Calibration-Hyperelasticity (C.-Z. Zhao, MIT)", "youngs_modulus, poissons_ratio");
+    for (const std::string mode : {"compression", "tension", "shear"}) {
+      const CsvTable table = CsvTable::load((fs::path(folder) / (region + "_" + mode + ".csv")).string());
+      const bool shear = mode == "shear";
+      const Eigen::VectorXd strain = (table.numbers(0).array() - (shear ? 0.0 : 1.0)).matrix(), stress = table.numbers(1) * 1e3;
+      const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(strain.size(), 0.0, static_cast<double>(strain.size()) - 1.0);
+      write_trial(to / (mode + ".csv"), t, strain * kSide, stress * kSide * kSide);
+      yaml += "  - { file: " + mode + ".csv, protocol: { mode: " + mode + " } }\n";
+    }
+    write_whole((to / "experiment.yaml").string(), yaml);
+    made.push_back(to.filename().string());
+  }
+  return made;
+}
+
+/// Cauchy stress of an incompressible specimen: nominal stress = Cauchy stress / stretch. The fastest ramp is held out.
+std::vector<std::string> muscle(const std::string& folder, const std::string& out) {
+  std::vector<std::string> made;
+  for (const auto& [letter, name] : std::vector<std::pair<std::string, std::string>>{{"F", "along"}, {"XF", "across"}}) {
+    const fs::path to = fs::path(out) / ("muscle-" + name);
+    fs::create_directories(to);
+    std::string yaml = head("Porcine muscle compressed " + name + " the fibres", "Van Loocke, Lyons, Simms, J. Biomechanics 2008/2009, as used by Wang, Linka, Kuhl, JMBBM 2023", "youngs_modulus");
+    for (const std::string run : {"10", "20", "30", "005", "01", "05"}) {
+      const fs::path from = fs::path(folder) / (letter + "_" + run + ".csv");
+      const CsvTable table = CsvTable::load(from.string());
+      const Eigen::VectorXd t = table.numbers(0), stretch = table.numbers(1), stress = table.numbers(2) * 1e3;
+      write_trial(to / ("run-" + run + ".csv"), t, ((stretch.array() - 1.0) * kSide).matrix(), (stress.array() / stretch.array() * kSide * kSide).matrix());
+      yaml += "  - { file: run-" + run + ".csv, protocol: { mode: compression, cycle: \"" + run + "\" }" + (run == "05" ? ", hold_out: true" : "") + " }\n";
+    }
+    write_whole((to / "experiment.yaml").string(), yaml);
+    made.push_back(to.filename().string());
+  }
+  return made;
+}
+
+}  // namespace
+
+std::vector<std::string> import_kinds() { return {"brain-budday2017", "muscle-vanloocke"}; }
+
+std::vector<std::string> import_data(const std::string& kind, const std::string& folder, const std::string& out) {
+  if (!fs::is_directory(folder)) throw InputError(folder, "folder", "no such folder", "the folder of the published tables");
+  if (kind == "brain-budday2017") return brain(folder, out);
+  if (kind == "muscle-vanloocke") return muscle(folder, out);
+  throw InputError("import", "KIND", kind, "brain-budday2017 or muscle-vanloocke");
+}
+
+}  // namespace filum::reconcile

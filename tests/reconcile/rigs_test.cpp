@@ -1,0 +1,108 @@
+// Each rig against a closed form, and every effect switched off leaves the baseline as it is, bit for bit.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "reconcile/model.h"
+
+namespace filum::reconcile {
+namespace {
+
+Dataset dataset(Rig rig, const std::vector<std::string>& outputs) {
+  Dataset d;
+  d.rig = rig;
+  for (const ParameterInfo& p : info(rig).baseline) d.nominal[p.name] = p.nominal, d.free.push_back(p.name);
+  d.outputs = outputs;
+  for (const ChannelInfo& c : info(rig).channels) d.channels.push_back({c.name, c.name, c.unit, 1.0, 0.0, c.input, 0.0});
+  return d;
+}
+
+Trial trial(int n, double span) {
+  Trial t;
+  t.file = "a.csv";
+  t.time = Eigen::VectorXd::LinSpaced(n, 0.0, span);
+  return t;
+}
+
+Eigen::VectorXd run(const Dataset& d, const std::vector<double>& base) {
+  const auto model = make_model(d);
+  Setting s;
+  s.base = base.data();
+  Eigen::MatrixXd out;
+  model->simulate(d.trials[0], s, out);
+  return out.col(0);
+}
+
+TEST(Rigs, CantileverOfSmallDeflectionDropsByAnEighth) {
+  Dataset d = dataset(Rig::suture_cantilever, {"tip_drop"});
+  Trial t = trial(3, 2.0);
+  t.specimen = {{"diameter", 25e-6}, {"density", 1140.0}};
+  const double E = 2.5e9, L = 2e-3, G = 16 * 1140.0 * 9.81 * L * L * L / (E * 25e-6 * 25e-6);
+  t.data["overhang"] = Eigen::VectorXd::Constant(3, L);
+  t.data["tip_drop"] = Eigen::VectorXd::Ones(3);
+  d.trials.push_back(t);
+  EXPECT_NEAR(run(d, {E})[1] / (L * G / 8), 1.0, 2e-3);
+}
+
+TEST(Rigs, VesselFollowsLame) {
+  Dataset d = dataset(Rig::vessel_inflation, {"outer_diameter"});
+  Trial t = trial(3, 2.0);
+  t.specimen = {{"outer_diameter", 2e-3}, {"wall_thickness", 0.3e-3}};
+  t.data["pressure"] = Eigen::VectorXd::LinSpaced(3, 0.0, 1e4);
+  t.data["outer_diameter"] = Eigen::VectorXd::Constant(3, 2e-3);
+  d.trials.push_back(t);
+  const double a = 0.7e-3, b = 1e-3, E = 3e5;
+  // u(b) = 2 P a^2 b (1 - nu^2) / (E (b^2 - a^2)), nu = 1/2
+  const double rise = 2.0 * 1e4 * a * a * b * 0.75 / (E * (b * b - a * a));
+  EXPECT_NEAR(run(d, {E})[2], 2e-3 + 2.0 * rise, 1e-12);
+}
+
+TEST(Rigs, CapstanFollowsEuler) {
+  Dataset d = dataset(Rig::suture_pull, {"pull_force"});
+  Trial t = trial(3, 2.0);
+  t.data["speed"] = Eigen::VectorXd::Constant(3, 1e-2);
+  t.data["hold_force"] = Eigen::VectorXd::Constant(3, 0.05);
+  t.data["wrap_angle"] = Eigen::VectorXd::Constant(3, std::numbers::pi);
+  t.data["pull_force"] = Eigen::VectorXd::Constant(3, 0.1);
+  d.trials.push_back(t);
+  EXPECT_NEAR(run(d, {0.2})[0], 0.05 * std::exp(0.2 * std::numbers::pi), 1e-15);
+}
+
+TEST(Rigs, BlockIsLinearInCompressionAndShear) {
+  for (const char* mode : {"compression", "shear"}) {
+    Dataset d = dataset(Rig::tissue_block, {"force"});
+    Trial t = trial(11, 10.0);
+    t.shape = "cuboid";
+    t.specimen = {{"length", 5e-3}, {"width", 4e-3}, {"height", 2e-3}};
+    t.protocol["mode"] = mode;
+    t.data["displacement"] = Eigen::VectorXd::LinSpaced(11, 0.0, -2e-4);
+    t.data["force"] = t.data["displacement"] * 10.0;
+    d.trials.push_back(t);
+    const double modulus = std::string(mode) == "shear" ? 1000.0 / 2.98 : 1000.0;
+    EXPECT_NEAR(run(d, {1000.0, 0.49})[10], modulus * 2e-5 * -0.1, 1e-15) << mode;
+  }
+}
+
+TEST(Rigs, OgdenOfAlphaTwoIsNeoHookean) {
+  Dataset d = dataset(Rig::tissue_block, {"force"});
+  Trial t = trial(11, 10.0);
+  t.shape = "cuboid";
+  t.specimen = {{"length", 1e-2}, {"width", 1e-2}, {"height", 1e-2}};
+  t.protocol["mode"] = "tension";
+  t.data["displacement"] = Eigen::VectorXd::LinSpaced(11, 0.0, 2e-3);
+  t.data["force"] = t.data["displacement"] * 10.0;
+  d.trials.push_back(t);
+  const auto model = make_model(d);
+  const std::vector<double> base = {900.0, 0.49};
+  const double alpha = 2.0;
+  Setting s;
+  s.base = base.data();
+  s.p[static_cast<std::size_t>(index_of(Effect::tension_compression_asymmetry))] = &alpha;
+  Eigen::MatrixXd out;
+  model->simulate(d.trials[0], s, out);
+  EXPECT_NEAR(out(10, 0), 300.0 * (1.2 - 1.0 / 1.44) * 1e-4, 1e-12);
+}
+
+}  // namespace
+}  // namespace filum::reconcile

@@ -1,0 +1,3 @@
+foreach(name hereditary dataset rigs workflow)
+  filum_test(reconcile/${name})
+endforeach()

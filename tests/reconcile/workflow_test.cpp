@@ -1,0 +1,98 @@
+// The whole workflow on small records made here: what is there is named, what is not is not, and a bad folder says so.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/rng.h"
+#include "records.h"
+#include "reconcile/hereditary.h"
+#include "reconcile/report.h"
+
+namespace filum::reconcile {
+namespace {
+
+const std::string kTrials =
+    "  - { file: a.csv, protocol: { mode: compression, rate: \"1 mm/s\" }, repeat: A }\n  - { file: b.csv, protocol: { mode: compression, rate: \"1 mm/s\" }, repeat: A }\n"
+    "  - { file: c.csv, protocol: { mode: compression, rate: \"8 mm/s\" }, repeat: B }\n  - { file: d.csv, protocol: { mode: compression, rate: \"8 mm/s\" }, repeat: B }\n";
+
+/// Writes four records of a block of 1 kPa: force [mN] = 5 * displacement [mm], relaxed by one exponential of share g.
+void write_block(const Folder& f, double g, std::uint64_t seed) {
+  Rng rng(seed);
+  f.write("experiment.yaml", block_yaml(kTrials));
+  for (const auto& [name, speed] : std::vector<std::pair<std::string, double>>{{"a.csv", 1}, {"b.csv", 1}, {"c.csv", 8}, {"d.csv", 8}}) {
+    double q = 0, last_t = 0, last_f = 0;
+    f.write(name, block_csv([&](double t, double u, int i) {
+              const double force = 5.0 * u, dt = t - last_t;  // Zener's internal variable, trapezoidal rule
+              if (i > 0) q = (q * (1 - 0.25 * dt) + 0.25 * dt * (force + last_f)) / (1 + 0.25 * dt);
+              last_t = t, last_f = force;
+              return force - g * q + 0.03 * rng.normal();
+            }, speed));
+  }
+}
+
+Result solve(const Folder& f) {
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  return reconcile(d);
+}
+
+TEST(Workflow, NamesRelaxationWithItsParameters) {
+  Folder f;
+  write_block(f, 0.4, 1);
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  const Result r = reconcile(d);
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  ASSERT_EQ(r.effects.size(), 1u);
+  EXPECT_EQ(r.effects[0].effect, Effect::viscoelastic_relaxation);
+  EXPECT_NEAR(r.effects[0].parameters[0].value, 0.4, 0.04);
+  EXPECT_NEAR(r.effects[0].parameters[1].value, 2.0, 0.3);
+  EXPECT_GT(r.fit.before, 2.0);
+  EXPECT_NEAR(r.fit.after, 1.0, 0.1);
+  EXPECT_NEAR(r.baseline[0].value, 1000.0, 50.0);
+}
+
+TEST(Workflow, NamesNothingWhereNothingIsMissing) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Folder f;
+    write_block(f, 0.0, seed);
+    const Result r = solve(f);
+    EXPECT_EQ(r.verdict, "agree") << r.sentence;
+    EXPECT_TRUE(r.effects.empty());
+  }
+}
+
+TEST(Workflow, WritesTheReportOfTheContract) {
+  Folder f;
+  write_block(f, 0.4, 2);
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  const Result r = reconcile(d);
+  write_report(d, r, f.file("out"), "test");
+  const auto j = nlohmann::json::parse(std::ifstream(f.file("out/report.json")));
+  for (const char* key : {"format", "dataset", "rig", "verdict", "effects", "baseline", "rivals", "gap", "where", "not_testable", "partial", "next_experiment", "model_written", "seconds"})
+    EXPECT_TRUE(j.contains(key)) << key;
+  EXPECT_EQ(j["format"], "filum-reconcile/1");
+  EXPECT_EQ(j["effects"][0]["name"], "viscoelastic-relaxation");
+  EXPECT_TRUE(j["effects"][0]["parameters"]["g1"].contains("low"));
+  EXPECT_TRUE(j["gap"]["noise"]["force"].contains("from"));
+  EXPECT_GT(j["gap"]["held_out"]["before"].get<double>(), j["gap"]["held_out"]["after"].get<double>());
+  std::ifstream html(f.file("out/report.html"));
+  const std::string page{std::istreambuf_iterator<char>(html), std::istreambuf_iterator<char>()};
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_EQ(page.find("http"), std::string::npos);  // opens without a network
+  EXPECT_TRUE(std::filesystem::exists(f.file("out/model.yaml")));
+}
+
+TEST(Workflow, ThreadsDoNotChangeTheResult) {
+  Folder f;
+  write_block(f, 0.4, 3);
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  Options one, four;
+  one.threads = 1;
+  four.threads = 4;
+  Result a = reconcile(d, one), b = reconcile(d, four);
+  a.seconds = b.seconds = 0.0;
+  EXPECT_EQ(report_json(d, a).dump(), report_json(d, b).dump());
+}
+
+}  // namespace
+}  // namespace filum::reconcile
