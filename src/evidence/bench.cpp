@@ -7,6 +7,7 @@
 #include <fstream>
 #include <thread>
 
+#include "evidence/brain_bench.h"
 #include "evidence/name_choice.h"
 #include "evidence/pulled_knot.h"
 
@@ -123,11 +124,15 @@ std::vector<Bench> all_benches() {
   const auto hanging = [](BenchResult& r, const TaskOpener&) { bench_hanging(r); };
   const auto knot = [](BenchResult& r, const TaskOpener&) { bench_knot(r); };
   const auto square = [](BenchResult& r, const TaskOpener& open) { bench_task(r, "knot-square", open); };
-  return {{stated("rod-100", 100, 2000), hanging},    {stated("knot-101", 101, 8000), knot},
+  std::vector<Bench> list = {{stated("rod-100", 100, 2000), hanging},    {stated("knot-101", 101, 8000), knot},
           {stated("knot-301", 301, 8000), knot},      {stated("task-knot-square", 0, 5000), square},
           {stated("scaling-50", 50, 500), hanging},   {stated("scaling-100", 100, 500), hanging},
           {stated("scaling-200", 200, 500), hanging}, {stated("scaling-400", 400, 500), hanging},
           {stated("scaling-800", 800, 500), hanging}};
+  const auto timer = [](BenchResult& r, const std::function<void()>& step, const std::function<void()>& look) { time_steps(r, step, look); };
+  for (auto& [r, run] : brain_benches())
+    list.push_back({r, [run = run, timer](BenchResult& result, const TaskOpener&) { run(result, timer); }});
+  return list;
 }
 
 }  // namespace

@@ -22,5 +22,7 @@ void list_dynamics(ProblemList& list);  // vibration, momentum
 void list_twist(ProblemList& list);     // twisting and its instabilities
 void list_friction(ProblemList& list);  // sliding on a plane and round a bar
 void list_knots(ProblemList& list);     // tight knots
+void list_tissue(ProblemList& list);    // brain: elements, time, half space, solvers
+void list_spatula(ProblemList& list);   // blade on tissue
 
 }  // namespace filum

@@ -14,9 +14,27 @@ Vec3 place(const LinearFem& fem, const Points& u, int node) { return fem.mesh().
 
 void SpatulaContact::reserve(std::size_t contacts) { moved_.reserve(contacts); }
 
+void SpatulaContact::set_surface(const TetMesh& mesh, std::span<const Triangle> surface) {
+  outward_ = Points::Zero(3, mesh.n_nodes());
+  for (const Triangle& t : surface) {
+    const Vec3 a = mesh.nodes.col(t[0]), area = (mesh.nodes.col(t[1]) - a).cross(mesh.nodes.col(t[2]) - a);
+    for (const int i : t) outward_.col(i) += area;
+  }
+  for (int i = 0; i < outward_.cols(); ++i)
+    if (const double length = outward_.col(i).norm(); length > 0.0) outward_.col(i) /= length;
+}
+
+/// Under the blade the tissue may face it at any slant; beside its border it must lie clearly on the side that is pressed.
+bool SpatulaContact::from_outside(const MovingBlade& blade, const BladeContact& c, const Vec3& normal_T, double beyond) const noexcept {
+  if (outward_.cols() == 0) return true;
+  constexpr double kUnder = 0.5, kBeside = -0.2;  // cosine between the push and the outward normal, at most
+  const double cosine = (blade.X_now.q * (c.side * normal_T)).dot(outward_.col(c.node));
+  return cosine < (beyond > 0.0 ? kBeside : kUnder);
+}
+
 double SpatulaContact::share_at(double beyond) const noexcept {
   if (!parameters_.partial) return beyond > 0.0 ? 0.0 : 1.0;
-  return std::clamp(1.0 - beyond / parameters_.reach, 0.0, 1.0);  // Eq. 9
+  return std::pow(std::clamp(1.0 - beyond / parameters_.reach, 0.0, 1.0), parameters_.power);  // Eq. 9, and a power of it
 }
 
 /// Where the node lies beside its blade now; false if the blade has left it.
@@ -37,6 +55,7 @@ void SpatulaContact::find(const Vec3& q0, const Vec3& q1, const MovingBlade& bla
   if (c.share <= 0.0 || share_at(end.beyond) <= 0.0) return;
   c.triangle = end.triangle;
   c.side = start.gap >= 0.0 ? 1 : -1;
+  if (!from_outside(blade, c, end.normal, end.beyond)) return;
   c.anchor_T = q1 - end.gap * end.normal;
   if (contacts.size() < contacts.capacity()) contacts.push_back(c);
 }

@@ -70,6 +70,7 @@ BrainScene::BrainScene(std::shared_ptr<const BrainModel> model)
   hits_.reserve(model_->cortex.surface.size());
   candidates_.reserve(n);
   contact_.reserve(n);
+  contact_.set_surface(model_->cortex.mesh, model_->cortex.surface);
   for (const BladeShape& shape : model_->blades) surfaces_.push_back(surface_of(shape));
   blades_.resize(surfaces_.size());
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
@@ -209,7 +210,7 @@ void BrainScene::measure(const BrainState& s, Observation& o) noexcept {
   }
   std::fill(b.pressure.begin(), b.pressure.end(), 0.0);
   for (std::size_t i = 0; i < blades_.size(); ++i) b.blades[i] = BladeObservation{};
-  std::array<double, 2> total{};
+  std::array<double, 2> total{}, touched{};  // [N], [m2]
   for (const BladeContact& c : s.contacts) {
     const auto v = static_cast<std::size_t>(vertex_of_[static_cast<std::size_t>(c.node)]);
     const auto i = static_cast<std::size_t>(c.blade);
@@ -221,8 +222,9 @@ void BrainScene::measure(const BrainState& s, Observation& o) noexcept {
     if ((s.blades[i].X_W.inverse() * place(s, c.node)).z() < kTip) blade.tip = std::max(blade.tip, pressure);
     blade.area += c.share * area_[v];
     total[i] += c.normal_force;
+    touched[i] += area_[v];
   }
-  for (std::size_t i = 0; i < blades_.size(); ++i) b.blades[i].mean = b.blades[i].area > 0.0 ? total[i] / b.blades[i].area : 0.0;
+  for (std::size_t i = 0; i < blades_.size(); ++i) b.blades[i].mean = touched[i] > 0.0 ? total[i] / touched[i] : 0.0;
 }
 
 double BrainScene::exposed_share(const BrainState& s) noexcept {

@@ -121,6 +121,17 @@ TEST(SpatulaContact, ANodeSlidingOffTheBladeLeavesWithoutAJump) {
   EXPECT_LT(largest_jump(smooth), 0.25 * largest_jump(abrupt));
 }
 
+TEST(SpatulaContact, ABladeThatIsLiftedTakesNoTissueUpBesideItsBorder) {
+  SpatulaParameters wide;
+  wide.reach = 6e-3;
+  Press p(20e-3, wide);
+  p.contact.set_surface(p.fem.mesh(), surface_triangles(p.fem.mesh()));
+  p.go(Vec3(0, 0, 1e-3), Vec3(0, 0, -4e-3), 50);
+  p.go(Vec3(0, 0, -4e-3), Vec3(0, 0, 8e-3), 60);
+  EXPECT_TRUE(p.contacts.empty());
+  EXPECT_EQ(p.blades[0].force.norm(), 0.0);
+}
+
 TEST(SpatulaContact, FrictionFollowsCoulomb) {
   for (const double mu : {0.0, 0.2}) {
     SpatulaParameters parameters;

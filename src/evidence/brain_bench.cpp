@@ -1,0 +1,189 @@
+// Timings of the brain: steps of a block under a blade, of an anatomy, and of collision alone.
+
+#include "evidence/brain_bench.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "evidence/brain_block.h"
+#include "world/cortex.h"
+
+namespace filum {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point begin) { return std::chrono::duration<double, std::milli>(Clock::now() - begin).count(); }
+
+double median(std::vector<double> v) {
+  if (v.empty()) return 0.0;
+  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+FemOptions run_time(double dt) {
+  FemOptions o;
+  o.dt = dt;
+  o.mass_damping = 20.0;
+  o.stiffness_damping = 10e-3;
+  o.single_precision = true;
+  o.solver.relative = 1e-3;
+  o.solver.max_iterations = 60;
+  return o;
+}
+
+/// The continuous push of the paper: down to `deepest` and up again, smoothly, while it moves sideways.
+Vec3 push_at(double time, double deepest) { return {2e-3 * std::sin(2.0 * time), 0.0, 0.5e-3 - deepest * 0.5 * (1.0 - std::cos(1.5 * time))}; }
+
+/// K_eff of the block as a plain sparse matrix; held nodes are given a large diagonal.
+Eigen::SparseMatrix<double> effective_matrix(const LinearFem& fem) {
+  const FemOptions& o = fem.options();
+  std::vector<Eigen::Triplet<double>> entries;
+  const BlockMatrix<double>& K = fem.stiffness();
+  for (int i = 0; i < K.n(); ++i)
+    for (int k = K.begins()[static_cast<std::size_t>(i)]; k < K.begins()[static_cast<std::size_t>(i) + 1]; ++k) {
+      const int j = K.columns()[static_cast<std::size_t>(k)];
+      Mat3 block = (1.0 + 2.0 / o.dt * o.stiffness_damping) * K.at(static_cast<std::size_t>(k));
+      if (i == j) block += (4.0 / (o.dt * o.dt) + 2.0 / o.dt * o.mass_damping) * fem.mass()[i] * Mat3::Identity();
+      if (i == j && fem.held()[static_cast<std::size_t>(i)]) block += 1e9 * Mat3::Identity();
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) entries.emplace_back(3 * i + r, 3 * j + c, block(r, c));
+    }
+  Eigen::SparseMatrix<double> A(3 * K.n(), 3 * K.n());
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+
+/// What the same matrix costs elsewhere: back substitution after a sparse factorisation, and plain conjugate gradients.
+void time_rivals(const LinearFem& fem, BenchResult& r) {
+  const Eigen::SparseMatrix<double> A = effective_matrix(fem);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(A.rows());
+  for (int i = 0; i < fem.mesh().n_nodes(); ++i)
+    if (fem.mesh().nodes(2, i) > -1e-9) b[3 * i + 2] = -1e-4;
+  auto begin = Clock::now();
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(A);
+  r.stages.emplace_back("rival: sparse LDLT, factor", milliseconds_since(begin));
+  std::vector<double> ms;
+  for (int k = 0; k < 5; ++k) {
+    begin = Clock::now();
+    const Eigen::VectorXd x = factor.solve(b);
+    ms.push_back(milliseconds_since(begin));
+    b[0] += 1e-30 * x[0];  // the solve is not to be left out
+  }
+  r.stages.emplace_back("rival: sparse LDLT, back substitution", median(ms));
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> gradients;
+  gradients.setTolerance(1e-6);
+  gradients.compute(A);
+  ms.clear();
+  for (int k = 0; k < 5; ++k) {
+    begin = Clock::now();
+    const Eigen::VectorXd x = gradients.solve(b);
+    ms.push_back(milliseconds_since(begin));
+    b[0] += 1e-30 * x[0];
+  }
+  r.stages.emplace_back("rival: Jacobi CG to 1e-6, cold", median(ms));
+}
+
+void bench_block(BenchResult& r, const StepTimer& timer, TetMesh mesh, double blade, double deepest, bool rivals) {
+  SpatulaParameters parameters;
+  parameters.reach = 6e-3;
+  BrainBlock block(std::move(mesh), run_time(1e-3 * r.dt_ms), blade, parameters, 4);
+  r.nodes = block.fem.mesh().n_nodes();
+  std::vector<double> contact, solve, iterations, residual;
+  int k = 0;
+  timer(
+      r, [&] { block.step(push_at(1e-3 * r.dt_ms * ++k, deepest)); },
+      [&] {
+        r.contacts = std::max(r.contacts, static_cast<int>(block.contacts().size()));
+        contact.push_back(block.contact_ms);
+        solve.push_back(block.solve_ms);
+        iterations.push_back(block.summary.iterations);
+        residual.push_back(block.summary.relative);
+      });
+  r.stages = {{"contact", median(contact)},
+              {"solve", median(solve)},
+              {"iterations (number, p50)", median(iterations)},
+              {"iterations (number, most)", *std::max_element(iterations.begin(), iterations.end())},
+              {"residual (relative, largest)", *std::max_element(residual.begin(), residual.end())}};
+  if (rivals) time_rivals(block.fem, r);
+}
+
+/// 20,000 triangles that move all the time, and a blade of 200 that looks for what it could touch.
+void bench_collision(BenchResult& r, const StepTimer& timer) {
+  const TetMesh mesh = box_mesh(Vec3(-0.06, -0.06, -0.002), Vec3(0.06, 0.06, 0.0), 100, 100, 1);
+  std::vector<Triangle> top;
+  for (const Triangle& t : surface_triangles(mesh))
+    if (mesh.nodes(2, t[0]) > -1e-9 && mesh.nodes(2, t[1]) > -1e-9 && mesh.nodes(2, t[2]) > -1e-9) top.push_back(t);
+  SurfaceTree tree(top, mesh.nodes);
+  BladeShape shape;
+  const RigidSurface blade = blade_surface(shape, 20, 5);  // 200 triangles
+  Points x = mesh.nodes;
+  std::vector<int> hits, candidates;
+  hits.reserve(top.size());
+  candidates.reserve(top.size());
+  std::vector<char> marked(static_cast<std::size_t>(mesh.n_nodes()), 0);
+  r.nodes = mesh.n_nodes();
+  std::size_t near = 0;
+  int k = 0;
+  timer(
+      r,
+      [&] {
+        tree.refit(x);
+        hits.clear();
+        candidates.clear();
+        const Vec3 p(0, 0, -1e-3);
+        tree.overlaps({blade.low.cwiseMin(p).array() - 6e-3 - 0.04, Vec3(blade.high.x() + 6e-3, 0.05, 6e-3)}, hits);
+        for (const int t : hits)
+          for (const int i : tree.triangles()[static_cast<std::size_t>(t)]) {
+            if (marked[static_cast<std::size_t>(i)]) continue;
+            marked[static_cast<std::size_t>(i)] = 1;
+            candidates.push_back(i);
+          }
+        near = 0;
+        for (const int i : candidates) {
+          marked[static_cast<std::size_t>(i)] = 0;
+          const Vec3 q(x(0, i), x(2, i) - p.z(), x(1, i) + 0.04);  // the blade lies along y
+          if ((q.array() < blade.low.array() - 1e-3).any() || (q.array() > blade.high.array() + 1e-3).any()) continue;
+          near += nearest_point(blade, q).gap < 0.0 ? 1 : 0;
+        }
+      },
+      [&] {
+        r.contacts = std::max(r.contacts, static_cast<int>(near));
+        ++k;
+        for (int i = 0; i < x.cols(); ++i) x(2, i) = mesh.nodes(2, i) + 1e-3 * std::sin(0.1 * k + 0.01 * i);
+      });
+  r.stages = {{"triangles (number)", static_cast<double>(top.size())}, {"blade triangles (number)", static_cast<double>(blade.triangles.size())}};
+}
+
+}  // namespace
+
+std::vector<std::pair<BenchResult, TimedBench>> brain_benches() {
+  std::vector<std::pair<BenchResult, TimedBench>> list;
+  const auto add = [&](const std::string& name, double dt_ms, int steps, TimedBench run) {
+    BenchResult r;
+    r.name = name;
+    r.dt_ms = dt_ms;
+    r.steps = steps;
+    list.emplace_back(r, std::move(run));
+  };
+  add("brain-2000", 2.0, 2000, [](BenchResult& r, const StepTimer& t) { bench_block(r, t, block_of_nodes(16, 16, 8, Vec3(0.06, 0.06, 0.03)), 20e-3, 6e-3, true); });
+  add("brain-10800", 10.0, 500, [](BenchResult& r, const StepTimer& t) { bench_block(r, t, block_of_nodes(60, 60, 3, Vec3(0.12, 0.12, 0.01)), 20e-3, 2e-3, true); });
+  add("brain-anatomy", 10.0, 500, [](BenchResult& r, const StepTimer& t) {
+    CortexShape shape;
+    shape.cells = {34, 28, 9};
+    shape.fissure_depth = 24e-3;
+    shape.fissure_gap = 3e-3;
+    bench_block(r, t, make_cortex(shape, "brain-anatomy").mesh, 20e-3, 6e-3, false);
+  });
+  add("blade-collision", 2.0, 1000, bench_collision);
+  for (const auto& [n, layers] : {std::pair(5, 3), {8, 3}, {10, 3}, {20, 3}, {30, 3}, {40, 3}, {50, 3}, {60, 3}})
+    add("brain-loop-" + std::to_string(n * n * layers), 10.0, 200, [n = n, layers = layers](BenchResult& r, const StepTimer& t) {
+      bench_block(r, t, block_of_nodes(n, n, layers, Vec3(0.12, 0.12, 0.01)), 30e-3, 2e-3, false);
+    });
+  return list;
+}
+
+}  // namespace filum
