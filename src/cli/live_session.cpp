@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <chrono>
 
+#include "cli/security.h"
 #include "training/result_json.h"
 
 namespace filum {
@@ -193,7 +194,7 @@ LiveOutcome LiveSession::wait() {
   scoring_thread_.join();
   if (failure_) std::rethrow_exception(failure_);
   LiveOutcome outcome;
-  outcome.result = task_.finish();
+  outcome.result = finish_with_security(task_, world_);
   const Observation& o = world_.observation();
   outcome.steps = o.step;
   outcome.scene_seconds = o.time;

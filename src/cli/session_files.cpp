@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "cli/options.h"
+#include "cli/security.h"
 #include "training/result_json.h"
 #include "training/task_session.h"
 #include "world/model.h"
@@ -88,7 +89,7 @@ Rescored rescore(const RecordingReader& recording) {
   TaskSession task(recorded.setup().task, world.description());
   ReplayResult replayed =
       replay(recording, world, [&task](const StepRecord&, const Observation& o) { task.observe(o); }, true);
-  return {task.finish(), std::move(replayed)};
+  return {finish_with_security(task, world), std::move(replayed)};
 }
 
 Json result_document(const Result& result) {

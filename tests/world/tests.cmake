@@ -1,3 +1,3 @@
-foreach(name fixtures observe scene_file state_hash world)
+foreach(name fixtures observe pull_test scene_file state_hash world)
   filum_test(world/${name})
 endforeach()
