@@ -141,7 +141,7 @@ const Fit* choose(const Search& search, const Rules& rules) {
     const double needed = now == nullptr ? rules.accept_evidence : rules.pair_evidence;
     const bool enough = fall >= needed && (now != nullptr || (before.chi2 - next->chi2) / search.dispersion() >= rules.detect);
     const double share = search.explained(*next) - (now == nullptr ? 0.0 : search.explained(*now));
-    if (!enough || search.material(*next, before) < 1.0 || (now != nullptr && share < rules.pair_share && search.material(*next, before) < rules.pair_material)) {
+    if (!enough || search.material(*next, before) < 1.0 || (now != nullptr && share < rules.pair_share && (share < rules.pair_least || search.material(*next, before) < rules.pair_material))) {
       if (now == nullptr) continue;  // two effects may cancel in the test of singles
       break;
     }
@@ -221,8 +221,7 @@ void name(const Search& search, const Fit& winner, Result& r, int threads) {
 
 void name_nothing(const Search& search, Result& r, int threads) {
   const Structure s = search.structure(search.base());
-  const double dispersion = replicate_dispersion(search.fitter(), search.base());
-  // what is left, smoothed over the block length where it stands out, in parts of full scale
+  // what is left, averaged over the block length where it stands out and freed of the noise's own share, in parts of full scale
   double sum = 0.0;
   int n = 0;
   for (const auto& trial : search.base().residual)
@@ -231,7 +230,7 @@ void name_nothing(const Search& search, Result& r, int threads) {
         const double mean = trial[c].segment(k, s.length).mean();
         if (std::isfinite(mean)) sum += std::pow(mean / search.fitter().noise().output[c].full_scale, 2), ++n;
       }
-  const bool seen = s.z / dispersion > r.rules.structure && n > 0 && std::sqrt(sum / n) > r.rules.materiality;
+  const bool seen = s.z > r.rules.structure && n > 0 && std::sqrt(sum / n * (1.0 - 1.0 / s.dispersion)) > r.rules.materiality;
   const Challenge c = challenge(search, search.base(), search.base(), threads);
   r.held_out = c.gap;
   r.held_out_how = c.how;

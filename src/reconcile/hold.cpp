@@ -264,7 +264,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
   const bool alias = std::any_of(found.begin(), found.end(), [&](const Found& f) { return f.effect == Effect::mains_hum && f.low < t.high && f.high > t.low; });
   if (fast && !alias && t.evidence > 25.0 && t.mean > 1.15 * t.background && t.top_share < 0.8 && t.centre > 7.6 && t.centre < 12.4)
-    found.push_back({Effect::physiological_tremor, nullptr, t.low - 0.6, t.high + 0.6, closing_frequency(all, t), squared_rms(all, t.low - 0.4, t.high + 0.4, t.background), t.evidence, t.bins});
+    found.push_back({Effect::physiological_tremor, nullptr, t.low - 0.6, t.high + 0.6, closing_frequency(all, t), squared_rms(all, t.low - 1.5, t.high + 1.5, t.background), t.evidence, t.bins});
   for (std::size_t c = 0; c < d.outputs.size(); ++c)
     for (const Trial& trial : d.trials)
       if (clipped(trial.at(d.outputs[c])) && r.effects.empty())

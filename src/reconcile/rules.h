@@ -15,7 +15,9 @@ struct Rules {
   double tie = 6.0;                  // rivals nearer than this in BIC are not told apart
   double pair_evidence = 12.0;       // fall of BIC that a further effect must bring
   double pair_share = 0.05;          // of the structure that a further effect must explain, or
-  double pair_material = 2.0;        // times the materiality by which it must change the prediction
+  double pair_least = 0.025;         // this share, if it changes the prediction by
+  double pair_material = 1.2;        // times the materiality (development half: less is the first effect's form error)
+  double form_preference = 4.0;      // of BIC, by which another form must beat the one of the catalogue
   double partial_structure = 6.0;    // standard deviations left, and
   double partial_share = 0.04;       // share left, both above: "partial"
   int most_effects = 3;

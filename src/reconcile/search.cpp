@@ -63,6 +63,11 @@ void Search::fit_baseline() {
   noise = estimate_noise(fitter_, loose);
   noise.scatter = model_.data().rig == Rig::forceps_bridge ? 0.008 : replicate_scatter(model_.data(), loose);
   fitter_.set_noise(noise);
+  // the geometric factor of a blade is an estimate: where two blades are compared it is free within reason
+  std::set<double> blades;
+  for (const Trial& t : model_.data().trials) blades.insert(t.size("blade_width") * t.size("blade_length"));
+  if (blades.size() > 1) noise.scatter = std::max(noise.scatter, 0.2);
+  fitter_.set_noise(noise);
   base_ = fitter_.fit({}, loose.base, {}, {}, &loose);
 }
 
@@ -115,8 +120,8 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
     }
     auto& forms = used[e];
     const bool new_form = forms.count(s.form->kind) == 0;
-    if (new_form && static_cast<int>(forms.size()) >= most_forms) continue;
-    if (!new_form && forms[s.form->kind] >= (s.form->params.size() > 1 ? 2 : 1)) continue;
+    if (new_form && static_cast<int>(forms.size()) >= most_forms && s.form->kind != 0) continue;
+    if (!new_form && forms[s.form->kind] >= (s.form->params.size() > 1 || e == Effect::saturation ? 2 : 1)) continue;
     ++forms[s.form->kind];
     todo.push_back(s);
   }
@@ -131,6 +136,15 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
   return fits;
 }
 
+double Search::preference(const Fit& f) const {
+  double sum = 0.0;
+  for (const Form* form : f.forms) {
+    const auto first = std::find_if(forms_.begin(), forms_.end(), [&](const Form& g) { return g.effect == form->effect; });
+    sum += form == &*first ? 0.0 : options_.rules.form_preference;
+  }
+  return sum;
+}
+
 /// Keeps the best fit of each set of effects.
 void Search::keep(std::vector<Fit> fits) {
   for (Fit& f : fits) {
@@ -138,7 +152,7 @@ void Search::keep(std::vector<Fit> fits) {
     if (mine.size() != f.forms.size()) continue;
     const auto at = std::find_if(candidates_.begin(), candidates_.end(), [&](const Fit& c) { return set_of(c) == mine; });
     if (at == candidates_.end()) candidates_.push_back(std::move(f));
-    else if (bic(f) < bic(*at)) *at = std::move(f);
+    else if (bic(f) + preference(f) < bic(*at) + preference(*at)) *at = std::move(f);
   }
   std::stable_sort(candidates_.begin(), candidates_.end(), [&](const Fit& a, const Fit& b) { return bic(a) < bic(b); });
 }
@@ -154,7 +168,7 @@ void Search::refresh() {
   const Fit& top = candidates_.empty() || bic(candidates_[0]) > bic(base_) ? base_ : candidates_[0];
   Noise noise = estimate_noise(fitter_, top);
   noise.scatter = fitter_.noise().scatter;
-  if (!top.forms.empty() && model_.data().rig != Rig::forceps_bridge) {
+  if (!top.forms.empty() && model_.data().rig != Rig::forceps_bridge && model_.data().rig != Rig::spatula_press) {
     // an effect that was missing may have looked like scatter, never the other way round
     noise.scatter = std::min(noise.scatter, std::max(0.008, replicate_scatter(model_.data(), top)));
   }
@@ -205,6 +219,16 @@ void Search::run() {
     top = best(size);
     if (next == nullptr || top == nullptr || bic(*next) > bic(*top) - options_.rules.pair_evidence) break;
   }
+}
+
+Structure Search::structure(const Fit& f) const {
+  Structure s = structure_of(f.white, f.parameters);
+  if (s.dispersion <= 1.0) return s;
+  const double own = replicate_dispersion(fitter_, f, s.length);
+  const double common = std::clamp(1.0 - (own - 1.0) / (s.dispersion - 1.0), 0.0, 1.0);
+  s.excess *= common;
+  s.z *= common;
+  return s;
 }
 
 double Search::explained(const Fit& f) const {

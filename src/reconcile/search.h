@@ -27,7 +27,8 @@ class Search {
   double explained(const Fit& f) const;
   /// Largest change of the prediction against another fit, over the rules' materiality (1: just material).
   double material(const Fit& f, const Fit& against) const;
-  Structure structure(const Fit& f) const { return structure_of(f.white, f.parameters); }
+  /// What the residual holds beyond what replicates differ by.
+  Structure structure(const Fit& f) const;
   const Fit* best(std::size_t effects) const;
 
  private:
@@ -38,6 +39,7 @@ class Search {
   void keep(std::vector<Fit> fits);
   void refresh();
   bool worth_more(const Fit& f) const;
+  double preference(const Fit& f) const;
 
   const RigModel& model_;
   const std::vector<Form>& forms_;

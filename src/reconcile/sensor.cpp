@@ -34,12 +34,13 @@ void low_pass(const Eigen::VectorXd& time, double tau, Eigen::Ref<Eigen::VectorX
 void apply_lag(const Trial& t, const Setting& s, Eigen::MatrixXd& out) {
   const double* p = s.on(Effect::sensor_lag);
   if (p == nullptr) return;
-  const int kind = s.form(Effect::sensor_lag), only = kind / 2 - 1;  // -1: all outputs alike
+  const int kind = s.form(Effect::sensor_lag), only = kind / 3 - 1;  // -1: all outputs alike
   for (Eigen::Index c = 0; c < out.cols(); ++c) {
     if (only >= 0 && c != only) continue;
-    if (kind % 2 == 0) {
+    if (kind % 3 != 1) {
       Eigen::VectorXd v = out.col(c);
-      low_pass(t.time, p[0], v);
+      low_pass(t.time, kind % 3 == 0 ? p[0] : 0.5 * p[0], v);
+      if (kind % 3 == 2) low_pass(t.time, 0.5 * p[0], v);
       out.col(c) = v;
     } else {
       const Eigen::VectorXd v = out.col(c);
@@ -133,9 +134,10 @@ std::vector<Form> RigModel::sensor_forms() const {
   if (clocked && has_scale()) {
     const std::vector<std::vector<double>> starts = {{dt}, {5 * dt}, {0.03 * span}};
     for (int c = d.outputs.size() > 1 ? -1 : 0; c < static_cast<int>(d.outputs.size()); ++c) {
-      const int kind = d.outputs.size() > 1 ? 2 * (c + 1) : 0;
+      const int kind = d.outputs.size() > 1 ? 3 * (c + 1) : 0;
       const std::string which = c < 0 || kind == 0 ? "all outputs" : d.outputs[static_cast<std::size_t>(c)];
       out.push_back({Effect::sensor_lag, kind, "first-order low pass, " + which, {{"time_constant", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
+      out.push_back({Effect::sensor_lag, kind + 2, "two equal low passes, " + which, {{"time_constant", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
       out.push_back({Effect::sensor_lag, kind + 1, "pure delay, " + which, {{"delay", "s", 0.02 * dt, 0.3 * span, true}}, starts, false});
     }
   }
@@ -157,9 +159,9 @@ std::vector<Form> RigModel::sensor_forms() const {
       for (const double v : t.at(name))
         if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
     const double peak = std::max(std::abs(low), std::abs(high));
-    if (low < 0) out.push_back({Effect::saturation, 3 * at, name + ": clipped on both sides", {{"limit", si, 0.2 * peak, 1.3 * peak, false}}, {{0.98 * peak}, {0.9 * peak}}, false});
-    if (high > 0) out.push_back({Effect::saturation, 3 * at + 1, name + ": clipped above", {{"limit", si, high - 0.9 * fs, high + 0.3 * fs, false}}, {{high - 0.02 * fs}, {high - 0.1 * fs}}, false});
-    if (low < -0.05 * fs) out.push_back({Effect::saturation, 3 * at + 2, name + ": clipped below", {{"limit", si, low - 0.3 * fs, low + 0.9 * fs, false}}, {{low + 0.02 * fs}, {low + 0.1 * fs}}, false});
+    if (low < 0) out.push_back({Effect::saturation, 3 * at, name + ": clipped on both sides", {{"limit", si, 0.2 * peak, 1.3 * peak, false}}, {{0.98 * peak}, {0.9 * peak}, {0.75 * peak}, {0.55 * peak}}, false});
+    if (high > 0) out.push_back({Effect::saturation, 3 * at + 1, name + ": clipped above", {{"limit", si, high - 0.9 * fs, high + 0.3 * fs, false}}, {{high - 0.02 * fs}, {high - 0.1 * fs}, {high - 0.25 * fs}, {high - 0.45 * fs}}, false});
+    if (low < -0.05 * fs) out.push_back({Effect::saturation, 3 * at + 2, name + ": clipped below", {{"limit", si, low - 0.3 * fs, low + 0.9 * fs, false}}, {{low + 0.02 * fs}, {low + 0.1 * fs}, {low + 0.25 * fs}, {low + 0.45 * fs}}, false});
   }
   if (clocked) out.push_back({Effect::mains_hum, 0, "line near 50 or 60 Hz, free phase in every record", {{"frequency", "Hz", 49.0, 61.0, false}}, {}, true});
   return out;

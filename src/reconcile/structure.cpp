@@ -66,7 +66,8 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
     const double floor = 1e-5 * o.full_scale;
     if (channel.noise > 0.0) {
       o.from = "stated";
-      o.sigma = std::max({channel.noise, std::sqrt(0.5 * v1), floor});
+      // jitter of the clock and steps of the converter may add to what is stated, but not anything
+      o.sigma = std::max(std::clamp(std::sqrt(0.5 * v1), channel.noise, 1.15 * channel.noise), floor);
       o.rho = std::clamp(1.0 - 0.5 * v1 / (o.sigma * o.sigma), 0.0, 0.98);
       // a variogram that keeps rising says the same more carefully; a slow misfit cannot lift it beyond the stated noise
       continue;
@@ -103,7 +104,7 @@ double replicate_scatter(const Dataset& d, const Fit& loose) {
   return std::clamp(s * (1.0 + 1.0 / freedom), 0.008, 0.15);
 }
 
-double replicate_dispersion(const Fitter& fitter, const Fit& fit) {
+double replicate_dispersion(const Fitter& fitter, const Fit& fit, int length) {
   const Dataset& d = fitter.model().data();
   std::map<std::string, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < d.trials.size(); ++i)
@@ -116,7 +117,7 @@ double replicate_dispersion(const Fitter& fitter, const Fit& fit) {
       if (a.size() == b.size()) difference.push_back((a - b) / std::numbers::sqrt2);
     }
   if (difference.empty()) return 1.0;
-  return structure_of(difference, static_cast<int>(difference.size())).dispersion;
+  return structure_of(difference, static_cast<int>(difference.size()), length).dispersion;
 }
 
 Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double high) {

@@ -21,7 +21,7 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit);
 /// Spread of the records' stiffness within groups of replicates, from a fit with a loose prior.
 double replicate_scatter(const Dataset& d, const Fit& loose);
 /// Overdispersion that replicates show among each other (their common misfit cancels), at least 1.
-double replicate_dispersion(const Fitter& fitter, const Fit& fit);
+double replicate_dispersion(const Fitter& fitter, const Fit& fit, int length = 0);
 
 struct Line {
   double frequency = 0.0;  // [Hz]

@@ -49,7 +49,15 @@ class Vessel final : public RigModel {
  private:
   double extra(double C, double lz, const Wall& w, const Setting& s) const;
   double sector(double C, double angle, const Wall& w) const;
-  double solve(double P, double lz, double start, double softened, const Wall& w, const Setting& s) const;
+  /// extra() at one axial stretch, tabulated: cubic (Catmull-Rom) between 400 points.
+  struct Table {
+    double low = 0.0, step = 1.0;
+    std::vector<double> value;
+    double operator()(double C) const;
+  };
+  Table tabulate(double lz, double least, double most, const Wall& w, const Setting& s) const;
+  template <class Extra>
+  double solve(double P, double start, double softened, const Wall& w, const Extra& extra) const;
 
   double largest_ = 1e-9, strain_ = 1e-3, a_ = 1.0, b_ = 1.0, span_ = 1.0;
 };
@@ -109,9 +117,26 @@ double Vessel::extra(double C, double lz, const Wall& w, const Setting& s) const
   return P;
 }
 
-/// C that bears the pressure P; monotone, so secant steps guarded by bisection.
-double Vessel::solve(double P, double lz, double start, double softened, const Wall& w, const Setting& s) const {
-  const auto miss = [&](double C) { return softened * (2.0 * w.mu * C * w.lame + extra(C, lz, w, s)) - P; };
+double Vessel::Table::operator()(double C) const {
+  const double x = std::clamp((C - low) / step, 1.0, static_cast<double>(value.size()) - 3.001);
+  const auto i = static_cast<std::size_t>(x);
+  const double t = x - static_cast<double>(i), a = value[i - 1], b = value[i], c = value[i + 1], d = value[i + 2];
+  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+}
+
+Vessel::Table Vessel::tabulate(double lz, double least, double most, const Wall& w, const Setting& s) const {
+  constexpr int kTable = 400;
+  Table t;
+  t.step = (most - least) / (kTable - 7);
+  t.low = least - 3 * t.step;
+  for (int i = 0; i < kTable; ++i) t.value.push_back(extra(t.low + i * t.step, lz, w, s));
+  return t;
+}
+
+/// C that bears the pressure P; monotone, so Newton steps guarded by bisection.
+template <class Extra>
+double Vessel::solve(double P, double start, double softened, const Wall& w, const Extra& extra) const {
+  const auto miss = [&](double C) { return softened * (2.0 * w.mu * C * w.lame + extra(C)) - P; };
   double low = -0.49 * w.a * w.a, high = 40.0 * w.a * w.a, C = start;
   for (int i = 0; i < 60; ++i) {
     const double f = miss(C);
@@ -119,7 +144,7 @@ double Vessel::solve(double P, double lz, double start, double softened, const W
     const double h = 1e-6 * w.a * w.a, slope = (miss(C + h) - f) / h;
     double next = slope > 0.0 ? C - f / slope : 0.5 * (low + high);
     if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - C) < 1e-10 * w.a * w.a) return next;
+    if (std::abs(next - C) < 1e-9 * w.a * w.a) return next;
     C = next;
   }
   return C;
@@ -141,6 +166,11 @@ void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
                      s.on(Effect::smooth_muscle_tone) == nullptr && s.on(Effect::perivascular_tethering) == nullptr && s.on(Effect::residual_stress) == nullptr;
   out.resize(t.samples(), static_cast<Eigen::Index>(data().outputs.size()));
   double C = 0.0, top = 0.0;
+  // an elastic term bears pressure at every C > 0, so the linear wall alone bounds C from above (softening by its factor)
+  const bool steady = !t.has("axial_stretch") || t.at("axial_stretch").maxCoeff() == t.at("axial_stretch").minCoeff();
+  const double reach = std::max(P.maxCoeff(), -P.minCoeff()) / (2.0 * w.mu * w.lame) / (soft != nullptr ? 1.0 - soft[0] : 1.0);
+  Table table;
+  if (!plain && steady) table = tabulate(t.has("axial_stretch") ? t.at("axial_stretch")[0] : 1.0, std::max(std::min(0.0, 1.3 * P.minCoeff() / (2.0 * w.mu * w.lame)), -0.45 * w.a * w.a), 1.3 * reach, w, s);
   for (Eigen::Index n = 0; n < P.size(); ++n) {
     const double lz = t.has("axial_stretch") ? t.at("axial_stretch")[n] : 1.0;
     if (plain) {
@@ -152,7 +182,7 @@ void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
         top = std::max(top, energy);
         softened = 1.0 - soft[0] * -std::expm1(-(top - energy) / soft[1]);
       }
-      C = solve(P[n], lz, C, softened, w, s);
+      C = steady ? solve(P[n], C, softened, w, table) : solve(P[n], C, softened, w, [&](double c) { return extra(c, lz, w, s); });
     }
     for (std::size_t c = 0; c < data().outputs.size(); ++c) {
       double& y = out(n, static_cast<Eigen::Index>(c));
