@@ -46,6 +46,25 @@ double grip_angle_of(double grip, double widest) noexcept {
 TaskView task_view_of(const TaskStatus& s) {
   TaskView view{s.step_name, s.step_index, s.steps, s.hint, s.elapsed, s.done, {}};
   for (const TaskWarning& w : s.warnings) view.warnings.push_back({w.level, w.text, w.code});
+  if (!s.retraction) return view;
+  const PressureWatch& p = *s.retraction;
+  const PressureLimits& l = p.limits();
+  RetractionView& r = view.retraction;
+  r.present = true;
+  r.pressure = p.pressure() / kMmHg;
+  r.alarm = l.alarm / kMmHg;
+  r.dose = p.dose() / (60.0 * kMmHg);
+  r.loaded = p.loaded();
+  r.perfusion = l.perfusion ? p.perfusion() / kMmHg : -1.0;
+  r.band = name_of(p.band());
+  r.dose_band = name_of(p.dose_band());
+  for (std::size_t k = 0; k < 3; ++k) {
+    r.bands[k] = l.bands[k] / kMmHg;
+    r.dose_bands[k] = l.dose_bands[k] / (60.0 * kMmHg);
+  }
+  r.label = l.label;
+  r.version = l.version;
+  r.source = l.source;
   return view;
 }
 

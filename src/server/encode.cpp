@@ -1,5 +1,7 @@
 #include "server/encode.h"
 
+#include "server/encode_brain.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -35,7 +37,7 @@ json task_json(const TaskView& task) {
   for (const WarningView& w : task.warnings) warnings.push_back({{"level", w.level}, {"text", w.text}, {"code", w.code}});
   return {{"step_name", task.step_name}, {"step_index", task.step_index}, {"steps", task.steps},
           {"hint", task.hint},           {"elapsed", task.elapsed},       {"done", task.done},
-          {"warnings", warnings}};
+          {"warnings", warnings},       {"retraction", retraction_json(task.retraction)}};
 }
 
 template <class Items, class Function>
@@ -145,6 +147,7 @@ std::string scene_message(const SceneDescription& scene) {
                   {"base", scene.has_post ? post_json(scene.base) : json()},
                   {"floor_height", scene.floor_height},
                   {"tools", tools},
+                  {"brain", brain_scene_json(scene.brain)},
                   {"capacity", scene.capacity}});
 }
 
@@ -194,6 +197,7 @@ std::string frame_body(const Observation& o, const TaskView* task, const std::ve
   }
   w.raw("],\"broken\":").flag(o.broken).raw(",\"break_edge\":").whole(o.break_edge);
   write_cuts(w, o);
+  w.raw(",\"brain\":").raw(brain_frame_text(o.brain));
   w.raw(",\"overruns\":").whole(static_cast<long long>(o.overruns)).raw(",\"real_time_factor\":").number(o.real_time_factor);
   w.raw(",\"task\":").raw(task == nullptr ? "null" : text_of(task_json(*task)));
   w.raw(",\"devices\":").raw(text_of(list_json(devices, device_json))).raw("}");

@@ -1,6 +1,7 @@
 #pragma once
 // What the viewer is told besides the Observation: plain copies, filled by whoever wires the parts together.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,6 +26,18 @@ struct WarningView {
   std::string code;
 };
 
+/// Brain retraction: pressure and dose against the limits in force.
+struct RetractionView {
+  bool present = false;
+  double pressure = 0.0, alarm = 0.0;  // [mmHg]
+  double dose = 0.0;                   // [mmHg min]
+  double loaded = 0.0;                 // [s], of the patient, without a pause
+  double perfusion = -1.0;             // [mmHg], -1: mode is off
+  std::string band, dose_band;         // "green" | "yellow" | "orange" | "red"
+  std::array<double, 3> bands{}, dose_bands{};  // from which yellow, orange, red
+  std::string label, version, source;  // of the limits
+};
+
 struct TaskView {
   std::string step_name;
   int step_index = 0;
@@ -33,6 +46,7 @@ struct TaskView {
   double elapsed = 0.0;  // [s], scored time
   bool done = false;
   std::vector<WarningView> warnings;
+  RetractionView retraction;
 };
 
 struct EventView {

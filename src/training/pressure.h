@@ -53,6 +53,7 @@ class PressureWatch {
   PressureBand band() const { return band_; }
   PressureBand dose_band() const;
   bool alarm() const { return peak_now_ >= limits_.alarm; }
+  double pressure() const { return peak_now_; }    // [Pa], now
   double dose() const { return dose_; }            // [Pa s]
   double dose_largest() const { return dose_largest_; }
   double risk() const;                             // of the largest dose

@@ -146,6 +146,7 @@ TaskStatus TaskSession::status() const {
   s.paused = paused_ && observed_;
   s.knot_class = recogniser_.knot_class();
   s.warnings = warnings();
+  if (retraction_) s.retraction = retraction_->pressure();
   return s;
 }
 

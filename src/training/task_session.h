@@ -35,6 +35,7 @@ struct TaskStatus {
   bool paused = false;                // scoring stands still
   std::string knot_class;             // as seen now
   std::vector<TaskWarning> warnings;  // in force now
+  std::optional<PressureWatch> retraction;  // of brain retraction: pressure and dose now
 };
 
 class TaskSession {
