@@ -12,11 +12,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json info_json(const StoreEntry& e, const std::string& title) {
+/// Where the poses came from, in one word, from what the recording says of it; empty if it cannot be read.
+std::string input_of(const std::string& file) {
+  try {
+    const std::string input = RecordingReader(file).meta().input;
+    if (input.starts_with("demonstrat")) return "demo";
+    return input == "pointer" ? "pointer" : "device";
+  } catch (const InputError&) {
+    return "";  // damaged: the store's check says so
+  }
+}
+
+Json info_json(const StoreEntry& e, const std::string& title, const std::string& file) {
   return {{"id", e.id},
           {"task", e.task},
           {"title", title},
-          {"input", ""},
+          {"input", input_of(file)},
           {"code", e.participant},
           {"started", e.started_utc},
           {"seconds", e.seconds},
@@ -41,7 +52,7 @@ std::optional<std::string> Trainer::api(std::string_view path) {
   if (path.empty()) {
     Json list = Json::array();
     if (store_) {
-      for (const StoreEntry& entry : store_->list()) list.push_back(info_json(entry, title_of(entry.task)));
+      for (const StoreEntry& entry : store_->list()) list.push_back(info_json(entry, title_of(entry.task), store_->file_of(entry.id)));
     }
     return text_of({{"sessions", list}});
   }
@@ -58,7 +69,7 @@ std::optional<std::string> Trainer::api(std::string_view path) {
   } catch (const InputError&) {
     // A session that is running or damaged has no result to show; the store's check names the damage.
   }
-  if (!series) return text_of({{"session", info_json(*entry, title_of(entry->task))}, {"result", result}});
+  if (!series) return text_of({{"session", info_json(*entry, title_of(entry->task), store_->file_of(entry->id))}, {"result", result}});
   if (result.is_null()) return text_of({{"series", Json::array()}, {"paths", Json::array()}});
   return text_of({{"series", result["series"]}, {"paths", result["paths"]}});
 }
