@@ -4,6 +4,7 @@ import * as THREE from "three";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
 import { RoundedBoxGeometry } from "three/examples/jsm/geometries/RoundedBoxGeometry.js";
 import type { Frame, Scene } from "../messages";
+import { Brain } from "./brain";
 import { FlatShadows } from "./flat_shadows";
 import { Instrument } from "./instruments";
 import { kSheet, paintedMaterials, physicalMaterials, type Materials } from "./materials";
@@ -23,6 +24,7 @@ export class Stage {
   private description: Scene | null = null;
   private instruments: Instrument[] = [];
   private thread: ThreadTube | null = null;
+  private brain: Brain | null = null;
   private readonly points: { array: Float64Array } = { array: new Float64Array(0) };
   private gaps: number[] = [];
   private threadRadius = 0.0125;
@@ -72,11 +74,14 @@ export class Stage {
     this.floorHeight = message.floor_height * kMm;
     this.focusHeight = message.post ? (message.post.position[2] + message.post.radius) * kMm : this.floorHeight;
     this.centre = message.post ? [message.post.position[0] * kMm, message.post.position[1] * kMm] : [0, 0];
+    if (message.brain) this.focusHeight = 0;
     this.threadRadius = message.thread_radius * kMm;
     this.addSheet();
     for (const bar of [message.post, message.base]) if (bar) this.addBar(bar);
     if (message.post) this.addStands(message.post);
-    this.instruments = message.tools.map((shape, index) => new Instrument(shape, index, this.materials));
+    this.brain = message.brain ? new Brain(message.brain, this.painted) : null;
+    if (this.brain) this.content.add(this.brain.group);
+    this.instruments = (this.brain ? [] : message.tools).map((shape, index) => new Instrument(shape, index, this.materials));
     for (const instrument of this.instruments) this.content.add(instrument.group);
     this.thread = new ThreadTube(Math.max(2, message.capacity), this.materials.thread);
     this.points.array = new Float64Array(3 * Math.max(2, message.capacity));
@@ -93,6 +98,7 @@ export class Stage {
     if (frame.break_edge >= 0) this.gaps.push(frame.break_edge);
     for (const edge of frame.cuts) this.gaps.push(edge);
     this.thread?.update(points, Math.floor(count / 3), Math.max(this.threadRadius, thinnest), this.gaps);
+    this.brain?.update(frame);
     for (let i = 0; i < this.instruments.length && i < frame.tools.length; ++i) this.instruments[i].update(frame.tools[i]);
   }
 
@@ -129,6 +135,7 @@ export class Stage {
     this.content.clear();
     this.instruments = [];
     this.thread = null;
+    this.brain = null;
   }
 
   private addSheet(): void {

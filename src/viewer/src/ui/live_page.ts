@@ -4,6 +4,7 @@ import { PointerInput } from "../input/pointer_input";
 import type { ServerMessage, TimedEvent } from "../messages";
 import type { LineState } from "../net/connection";
 import { fieldDiameter } from "../scene/optics";
+import { BrainPanel } from "./brain_panel";
 import { clear, h, setAttribute, setText } from "./dom";
 import { opticsBar } from "./field_view";
 import { microscopeKey, microscopeMouse } from "./microscope_keys";
@@ -29,6 +30,7 @@ export class LivePage implements Page {
   private readonly unhook: () => void;
   private steps: StepPanel | null = null;
   private forces: ForcePanel | null = null;
+  private brain: BrainPanel | null = null;
   private lastPanels = 0;
   private refused = false; // the last start; its reason stays on the page
 
@@ -105,7 +107,8 @@ export class LivePage implements Page {
     const end = h("button", { class: "end", onclick: () => { this.app.send({ type: "stop" }); } }, "End task");
     const back = h("button", { class: "quietbutton", onclick: () => this.focus() }, "To the field");
     this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), this.events), h("div", { class: "buttons" }, end, back));
-    this.right.append(this.forces.element, this.health.element);
+    this.brain = scene.brain ? new BrainPanel(scene, () => this.view.redraw()) : null;
+    this.right.append(this.brain ? this.brain.element : this.forces.element, this.health.element);
   }
 
   private showSession(): void {
@@ -150,6 +153,7 @@ export class LivePage implements Page {
     this.lastPanels = now;
     if (this.over.querySelector(".loading")) clear(this.over);
     this.steps?.show(frame.task, frame.time);
+    if (this.app.scene) this.brain?.show(frame, this.app.scene);
     this.forces?.show(frame, this.pointer.live ? this.pointer.hands.active : null);
     this.health.show(frame);
   }

@@ -6,6 +6,7 @@ import { clear, h, setText } from "./dom";
 import { opticsBar } from "./field_view";
 import { clock, quantity, words } from "./format";
 import { microscopeKey, microscopeMouse } from "./microscope_keys";
+import { BrainPanel } from "./brain_panel";
 import { ForcePanel, StepPanel, WarningList } from "./panels";
 
 const kPanelsEvery = 60; // [ms]
@@ -27,6 +28,7 @@ export class ReplayPage implements Page {
   private readonly unhook: () => void;
   private steps: StepPanel | null = null;
   private forces: ForcePanel | null = null;
+  private brain: BrainPanel | null = null;
   private events: TimedEvent[] = [];
   private lastPanels = 0;
   private lastSeek = 0;
@@ -130,7 +132,8 @@ export class ReplayPage implements Page {
     const list = this.events.map((event) => h("li", {}, h("button", { class: "eventbutton", onclick: () => this.seek(event.time) },
       h("span", { class: "when" }, `${event.time.toFixed(1)} s`), h("span", {}, event.text || words(event.name)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit)))));
     this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), h("ul", { class: "events long" }, ...list)));
-    this.right.append(this.forces.element, h("a", { class: "button", href: `#/result/${encodeURIComponent(this.id)}` }, "Score and reasons"));
+    this.brain = scene.brain ? new BrainPanel(scene, () => this.view.redraw()) : null;
+    this.right.append(this.brain ? this.brain.element : this.forces.element, h("a", { class: "button", href: `#/result/${encodeURIComponent(this.id)}` }, "Score and reasons"));
     this.showMarks();
   }
 
@@ -169,6 +172,7 @@ export class ReplayPage implements Page {
     this.lastPanels = now;
     this.warnings.show(frame.task?.warnings ?? []);
     this.steps?.show(frame.task, frame.time);
+    if (this.app.scene) this.brain?.show(frame, this.app.scene);
     this.forces?.show(frame, null);
   }
 }

@@ -1,0 +1,134 @@
+// The brain in the field: cortex with its vessels and wet sheen, the pressure of the blades on it in colours, blades with
+// their arms, bridging veins, the target. It draws what frames say; colours say it a second time beside the panel's words.
+import * as THREE from "three";
+import type { BrainShape, BrainState, Frame } from "../messages";
+
+const kMm = 1000;
+export type PressureMode = "scale" | "threshold" | "off";
+/// How pressure is coloured; chosen in the panel, looked at by every drawing.
+export const pressureView: { mode: PressureMode; threshold: number } = { mode: "scale", threshold: 30 };
+
+/// Okabe and Ito's colours, told apart with every common colour vision: mmHg and sRGB.
+export const kPressureStops: [number, [number, number, number]][] = [
+  [3, [0.34, 0.71, 0.91]], [10, [0.94, 0.89, 0.26]], [20, [0.9, 0.62, 0]], [30, [0.84, 0.37, 0]], [40, [0.42, 0.05, 0.42]],
+];
+
+/// Colour of a pressure [mmHg] and how much of it covers the tissue, 0 to 1.
+export function pressureColour(mmHg: number, mode: PressureMode, threshold: number): { colour: [number, number, number]; cover: number } {
+  if (mode === "off" || mmHg <= 0) return { colour: [0, 0, 0], cover: 0 };
+  if (mode === "threshold") return { colour: [0.84, 0.2, 0], cover: mmHg >= threshold ? 0.95 : 0 };
+  const last = kPressureStops[kPressureStops.length - 1];
+  if (mmHg >= last[0]) return { colour: last[1], cover: 0.95 };
+  const at = kPressureStops.findIndex(([from]) => mmHg < from);
+  if (at === 0) return { colour: kPressureStops[0][1], cover: (0.9 * mmHg) / kPressureStops[0][0] };
+  const [from, a] = kPressureStops[at - 1], [to, b] = kPressureStops[at], s = (mmHg - from) / (to - from);
+  return { colour: [0, 1, 2].map((k) => a[k] + s * (b[k] - a[k])) as [number, number, number], cover: 0.9 };
+}
+
+/// Colour of the tissue without pressure: grey-pink, redder in furrows, with small vessels.
+export function tissueColour(x: number, y: number, z: number): [number, number, number] {
+  const vessel = Math.abs(Math.sin(0.31 * x + 1.7 * Math.sin(0.13 * y + 0.4))) < 0.09 || Math.abs(Math.sin(0.23 * y + 1.3 * Math.sin(0.19 * x))) < 0.06;
+  const deep = Math.min(1, Math.max(0, -z / 12)), grain = 0.03 * Math.sin(1.9 * x + 2.3 * y);
+  const base: [number, number, number] = [0.85 - 0.22 * deep + grain, 0.66 - 0.3 * deep + grain, 0.6 - 0.28 * deep + grain];
+  return vessel ? [0.66, 0.2 - 0.05 * deep, 0.19] : base;
+}
+
+function mesh(vertices: number[], triangles: number[], material: THREE.Material): THREE.Mesh<THREE.BufferGeometry> {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(vertices.map((v) => v * kMm)), 3));
+  geometry.setIndex(triangles);
+  geometry.computeVertexNormals();
+  const made = new THREE.Mesh(geometry, material);
+  made.castShadow = made.receiveShadow = true;
+  return made;
+}
+
+export class Brain {
+  readonly group = new THREE.Group();
+  private readonly cortex: THREE.Mesh<THREE.BufferGeometry>;
+  private readonly tissue: Float32Array;
+  private readonly blades: THREE.Group[] = [];
+  private readonly veins: { mesh: THREE.Mesh; vertex: number; dura: THREE.Vector3 }[];
+
+  constructor(shape: BrainShape, painted: boolean) {
+    const wet = painted
+      ? new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide })
+      : new THREE.MeshPhysicalMaterial({ vertexColors: true, roughness: 0.45, clearcoat: 0.85, clearcoatRoughness: 0.18, side: THREE.DoubleSide });
+    this.cortex = mesh(shape.rest, shape.triangles, wet);
+    this.tissue = new Float32Array(shape.rest.length);
+    for (let i = 0; i < shape.rest.length; i += 3) this.tissue.set(tissueColour(shape.rest[i] * kMm, shape.rest[i + 1] * kMm, shape.rest[i + 2] * kMm), i);
+    this.cortex.geometry.setAttribute("color", new THREE.BufferAttribute(this.tissue.slice(), 3));
+    this.group.add(this.cortex, rim(shape));
+    const steel = painted ? new THREE.MeshLambertMaterial({ color: 0xaab4bb, side: THREE.DoubleSide }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, side: THREE.DoubleSide });
+    for (const blade of shape.blades) {
+      const held = new THREE.Group();
+      const arm = new THREE.Mesh(new THREE.CylinderGeometry(1.6, 1.6, 60, 16), steel);
+      const end = blade.vertices.slice(-3).map((v) => v * kMm);
+      arm.position.set(0, end[1], end[2] + 25);
+      arm.rotation.x = Math.PI / 2;
+      held.add(mesh(blade.vertices, blade.triangles, steel), arm);
+      this.blades.push(held);
+      this.group.add(held);
+    }
+    const blue = new THREE.MeshStandardMaterial({ color: 0x3a2a66, roughness: 0.35 });
+    this.veins = shape.veins.map(({ vertex, dura }) => {
+      const vein = new THREE.Mesh(new THREE.CylinderGeometry(0.7, 0.7, 1, 12), blue);
+      this.group.add(vein);
+      return { mesh: vein, vertex, dura: new THREE.Vector3(...dura).multiplyScalar(kMm) };
+    });
+    if (shape.target) {
+      const disc = new THREE.Mesh(new THREE.CircleGeometry(shape.target.radius * kMm, 32), new THREE.MeshBasicMaterial({ color: 0x56b4e9, toneMapped: false }));
+      disc.position.set(...(shape.target.position as [number, number, number])).multiplyScalar(kMm);
+      this.group.add(disc);
+    }
+  }
+
+  update(frame: Frame): void {
+    const state = frame.brain;
+    if (!state) return;
+    const position = this.cortex.geometry.getAttribute("position") as THREE.BufferAttribute, array = position.array as Float32Array;
+    for (let i = 0; i < array.length && i < state.positions.length; ++i) array[i] = state.positions[i] * kMm;
+    position.needsUpdate = true;
+    this.cortex.geometry.computeVertexNormals();
+    this.colour(state);
+    this.blades.forEach((blade, k) => {
+      const pose = frame.tools[k]?.pose;
+      if (!pose) return;
+      blade.position.set(pose.position[0], pose.position[1], pose.position[2]).multiplyScalar(kMm);
+      blade.quaternion.set(pose.quaternion[1], pose.quaternion[2], pose.quaternion[3], pose.quaternion[0]);
+    });
+    this.veins.forEach((vein, k) => this.stretch(vein, array, state.veins_torn[k] === 1));
+  }
+
+  private colour(state: BrainState): void {
+    const colour = this.cortex.geometry.getAttribute("color") as THREE.BufferAttribute, array = colour.array as Float32Array;
+    for (let i = 0; i < state.pressure.length && 3 * i + 2 < array.length; ++i) {
+      const over = pressureColour(state.pressure[i], pressureView.mode, pressureView.threshold);
+      for (let k = 0; k < 3; ++k) array[3 * i + k] = (1 - over.cover) * this.tissue[3 * i + k] + over.cover * over.colour[k];
+    }
+    colour.needsUpdate = true;
+  }
+
+  private stretch(vein: { mesh: THREE.Mesh; vertex: number; dura: THREE.Vector3 }, at: Float32Array, torn: boolean): void {
+    const foot = new THREE.Vector3(at[3 * vein.vertex], at[3 * vein.vertex + 1], at[3 * vein.vertex + 2]);
+    const end = torn ? foot.clone().lerp(vein.dura, 0.35) : vein.dura;
+    const span = end.clone().sub(foot), length = Math.max(0.1, span.length());
+    vein.mesh.position.copy(foot).addScaledVector(span, 0.5);
+    vein.mesh.scale.set(1, length, 1);
+    vein.mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), span.divideScalar(length));
+  }
+}
+
+/// The bone about the window: a frame around the block, for the eye only.
+function rim(shape: BrainShape): THREE.Mesh {
+  let halfX = 0, halfY = 0;
+  for (let i = 0; i < shape.rest.length; i += 3) {
+    halfX = Math.max(halfX, Math.abs(shape.rest[i]) * kMm);
+    halfY = Math.max(halfY, Math.abs(shape.rest[i + 1]) * kMm);
+  }
+  const outline = new THREE.Shape([[-2, -2], [2, -2], [2, 2], [-2, 2]].map(([x, y]) => new THREE.Vector2(x * halfX, y * halfY)));
+  outline.holes.push(new THREE.Path().absellipse(0, 0, halfX * 0.97, halfY * 0.97, 0, 2 * Math.PI, true));
+  const bone = new THREE.Mesh(new THREE.ExtrudeGeometry(outline, { depth: 4, bevelEnabled: false, curveSegments: 48 }), new THREE.MeshLambertMaterial({ color: 0xe9dcc0 }));
+  bone.position.z = -1;
+  return bone;
+}

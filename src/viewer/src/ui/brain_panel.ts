@@ -1,0 +1,80 @@
+// The panel of brain retraction: pressure with its legend in mmHg, dose, timer, exposure, what each blade does, and how the
+// pressure is coloured. Every state is said in words beside its colour; the limits' label and version are always shown.
+import type { Frame, Scene } from "../messages";
+import { kPressureStops, pressureView, type PressureMode } from "../scene/brain";
+import { clock } from "./format";
+import { h, setAttribute, setText } from "./dom";
+
+const kModes: [PressureMode, string][] = [["scale", "Full scale"], ["threshold", "Red only"], ["off", "Off"]];
+const kWords: Record<string, string> = { green: "fine", yellow: "watch", orange: "high", red: "too high" };
+
+/// Share of a bar that `value` fills, 0 to 1.
+export function share(value: number, full: number): number { return full > 0 ? Math.min(1, Math.max(0, value / full)) : 0; }
+
+function css([r, g, b]: [number, number, number]): string { return `rgb(${[r, g, b].map((c) => Math.round(255 * c)).join(" ")})`; }
+
+class Bar {
+  private readonly fill = h("div", { class: "fill" });
+  private readonly value = h("output", {}, "");
+  private readonly marks = h("div", { class: "marks" });
+  readonly element: HTMLElement;
+
+  constructor(private readonly label: string, private readonly unit: string) {
+    this.element = h("div", { class: "meter brainmeter", role: "meter", "aria-label": label, "aria-valuemin": 0 },
+      h("span", { class: "label" }, label), this.value, h("div", { class: "track" }, this.fill), this.marks);
+  }
+
+  show(value: number, band: string, bands: number[], full: number): void {
+    this.fill.style.transform = `scaleX(${share(value, full).toFixed(3)})`;
+    setAttribute(this.element, "data-band", band);
+    const text = `${value.toFixed(value < 100 ? 1 : 0)} ${this.unit} · ${kWords[band] ?? band}`;
+    setText(this.value, text);
+    setText(this.marks, bands.map((b) => b.toFixed(0)).join(" · ") + ` ${this.unit}`);
+    setAttribute(this.element, "aria-valuenow", value.toFixed(1));
+    setAttribute(this.element, "aria-valuemax", full.toFixed(0));
+    setAttribute(this.element, "aria-valuetext", `${this.label} ${text}`);
+  }
+}
+
+export class BrainPanel {
+  readonly element = h("section", { class: "panel brain", "aria-label": "Brain retraction" });
+  private readonly pressure = new Bar("Pressure", "mmHg");
+  private readonly dose = new Bar("Dose", "mmHg min");
+  private readonly rows: HTMLElement[];
+  private readonly timer = h("output", { class: "row" }, "");
+  private readonly seen = h("output", { class: "row" }, "");
+  private readonly note = h("p", { class: "note" }, "");
+  private readonly modes: HTMLButtonElement[];
+
+  constructor(scene: Scene, private readonly redraw: () => void) {
+    this.rows = (scene.brain?.blades ?? []).map(() => h("output", { class: "row" }, ""));
+    this.modes = kModes.map(([mode, label]) => h("button", { class: "segment", onclick: () => this.choose(mode) }, label));
+    const stops = kPressureStops.map(([at, colour]) => `${css(colour)} ${((100 * at) / 40).toFixed(0)}%`).join(", ");
+    const legend = h("div", { class: "legend", role: "img", "aria-label": "Colours from 0 to 40 mmHg" },
+      h("div", { class: "ramp", style: `background: linear-gradient(90deg, ${stops}); height: 10px; border-radius: 3px` }),
+      h("div", { class: "ticks", style: "display: flex; justify-content: space-between" }, ...["0", "10", "20", "30", "40 mmHg"].map((t) => h("span", {}, t))));
+    this.element.append(h("h2", {}, "Retraction"), this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows,
+      h("div", { class: "segments", role: "group", "aria-label": "Colours of the pressure" }, ...this.modes), this.note);
+    this.choose(pressureView.mode);
+  }
+
+  private choose(mode: PressureMode): void {
+    pressureView.mode = mode;
+    this.modes.forEach((button, k) => button.setAttribute("aria-pressed", String(kModes[k][0] === mode)));
+    this.redraw();
+  }
+
+  show(frame: Frame, scene: Scene): void {
+    const r = frame.task?.retraction, brain = frame.brain;
+    if (r) {
+      pressureView.threshold = r.bands[2];
+      this.pressure.show(r.pressure, r.band, r.bands, r.alarm);
+      this.dose.show(r.dose, r.dose_band, r.dose_bands, 1.2 * r.dose_bands[2]);
+      setText(this.timer, `Without a pause: ${clock(r.loaded)} of the patient's time` + (r.perfusion >= 0 ? ` · perfusion ${r.perfusion.toFixed(0)} mmHg` : ""));
+      setText(this.note, `${r.label}. Version ${r.version}. ${r.source}`);
+    }
+    if (!brain) return;
+    setText(this.seen, scene.brain?.target ? `Target seen: ${(100 * brain.exposed).toFixed(0)} %` : "");
+    brain.blades.forEach((blade, k) => setText(this.rows[k], `${scene.brain?.blades[k]?.name ?? "blade"}: ${blade.force.toFixed(2)} N on ${blade.area.toFixed(1)} cm², mean ${blade.mean.toFixed(0)}, tip ${blade.tip.toFixed(0)} mmHg${blade.parked ? ", on its arm" : ""}`));
+  }
+}

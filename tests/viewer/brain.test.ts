@@ -1,0 +1,89 @@
+import * as THREE from "three";
+import { describe, expect, it } from "vitest";
+import type { Frame, Scene } from "@viewer/messages";
+import { Brain, kPressureStops, pressureColour, pressureView, tissueColour } from "@viewer/scene/brain";
+import { BrainPanel, share } from "@viewer/ui/brain_panel";
+import { frameAt, kScene } from "./sample_frames.mjs";
+
+const shape = {
+  name: "block", triangles: [0, 1, 2, 1, 3, 2], rest: [0, 0, 0, 0.01, 0, 0, 0, 0.01, 0, 0.01, 0.01, 0],
+  blades: [{ name: "spatula", vertices: [-0.005, 0, 0, 0.005, 0, 0, 0, 0, 0.08], triangles: [0, 1, 2], width: 0.01, grip: 0.1 }],
+  veins: [{ vertex: 3, dura: [0.02, 0.01, 0.004] as [number, number, number] }], target: null, time_compression: 10,
+};
+const scene = { ...kScene, brain: shape } as unknown as Scene;
+const retraction = { pressure: 24, band: "orange", dose: 80, dose_band: "yellow", loaded: 125, perfusion: -1, bands: [10, 20, 30], dose_bands: [75, 150, 225], alarm: 40, label: "Training heuristic, not a clinical limit", version: "1", source: "rats" };
+function frame(pressure: number[], torn = 0): Frame {
+  const made = frameAt(1, 1, 10);
+  return { ...made, task: { ...made.task, retraction }, brain: { positions: shape.rest.map((x, i) => x - (i % 3 === 2 ? 0.002 : 0)), pressure, blades: [{ force: 0.42, area: 1.3, peak: 24, mean: 12, tip: 24, parked: true }], exposed: 0.5, veins_torn: [torn] } } as unknown as Frame;
+}
+
+describe("pressure colours", () => {
+  it("leave the tissue alone without pressure and when they are off", () => {
+    expect(pressureColour(0, "scale", 30).cover).toBe(0);
+    expect(pressureColour(50, "off", 30).cover).toBe(0);
+  });
+  it("meet their stops and change without a jump between them", () => {
+    for (const [at, colour] of kPressureStops) pressureColour(at, "scale", 30).colour.forEach((c, k) => expect(c).toBeCloseTo(colour[k], 6));
+    for (let p = 3.1; p < 45; p += 0.1) {
+      const a = pressureColour(p, "scale", 30).colour, b = pressureColour(p + 0.1, "scale", 30).colour;
+      expect(Math.hypot(...a.map((c, k) => c - b[k]))).toBeLessThan(0.03);
+    }
+  });
+  it("show only what is above the threshold in that mode", () => {
+    expect(pressureColour(29.9, "threshold", 30).cover).toBe(0);
+    expect(pressureColour(30, "threshold", 30).cover).toBeGreaterThan(0.9);
+  });
+  it("of the tissue are colours", () => {
+    for (let x = -35; x < 35; x += 3) for (const c of tissueColour(x, 0.7 * x, -5)) expect(c).toSatisfy((v: number) => v >= 0 && v <= 1);
+  });
+});
+
+describe("brain", () => {
+  it("follows the vertices, colours them and moves the blade with its tool", () => {
+    pressureView.mode = "scale";
+    const brain = new Brain(shape, true);
+    brain.update(frame([0, 0, 40, 0]));
+    const cortex = brain.group.children[0] as THREE.Mesh<THREE.BufferGeometry>;
+    expect(cortex.geometry.getAttribute("position").getZ(3)).toBeCloseTo(-2, 5);
+    const colour = cortex.geometry.getAttribute("color");
+    expect(colour.getZ(2)).toBeGreaterThan(colour.getY(2)); // purple at 40 mmHg
+    expect(colour.getX(0)).toBeGreaterThan(colour.getZ(0)); // tissue elsewhere
+  });
+  it("shortens a vein that has torn", () => {
+    const length = (torn: number) => {
+      const brain = new Brain(shape, true);
+      brain.update(frame([0, 0, 0, 0], torn));
+      return Math.max(...brain.group.children.filter((c) => c instanceof THREE.Mesh).map((c) => (c.geometry instanceof THREE.CylinderGeometry ? c.scale.y : 0)));
+    };
+    expect(length(1)).toBeLessThan(0.5 * length(0));
+  });
+});
+
+describe("brain panel", () => {
+  it("says pressure, dose and the limits' label in words, not by colour alone", () => {
+    const panel = new BrainPanel(scene, () => {});
+    panel.show(frame([0, 0, 0, 0]), scene);
+    const text = panel.element.textContent ?? "";
+    expect(text).toContain("24.0 mmHg · high");
+    expect(text).toContain("80.0 mmHg min · watch");
+    expect(text).toContain("Training heuristic, not a clinical limit");
+    expect(text).toContain("0.42 N");
+    expect(text).toContain("on its arm");
+    expect(text).toContain("40 mmHg");
+  });
+  it("bars never run over", () => {
+    expect(share(50, 40)).toBe(1);
+    expect(share(-1, 40)).toBe(0);
+    expect(share(1, 0)).toBe(0);
+  });
+  it("switches the colours", () => {
+    let drawn = 0;
+    const panel = new BrainPanel(scene, () => { ++drawn; });
+    const off = [...panel.element.querySelectorAll("button")].find((b) => b.textContent === "Off")!;
+    off.click();
+    expect(pressureView.mode).toBe("off");
+    expect(off.getAttribute("aria-pressed")).toBe("true");
+    expect(drawn).toBeGreaterThan(1);
+    pressureView.mode = "scale";
+  });
+});
