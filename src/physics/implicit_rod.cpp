@@ -10,6 +10,7 @@ namespace {
 constexpr int kMostHalvings = 14;
 constexpr int kMostRounds = 4;  // of contact prediction in a Newton step
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
+constexpr double kLeastReach = 0.05;    // [radii], of the search for near pairs
 constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
 
 /// How much of the way the normal forces that friction goes by move in an iteration: all of it at first; but in a knot they can swing
@@ -63,7 +64,7 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
   predict(s, memory, o);
   for (;; ++summary.iterations) {
     summary.arrived = advance_boundary(s);
-    update_geometry(s, x_, theta_, geometry_);
+    fit_geometry(s);
     const double share = load_share(summary.iterations);
     contact_.update(x_, material.radius, contact_material, share);
     obstacles.update(x_, material.radius, contact_material, share);
@@ -110,6 +111,7 @@ void ImplicitRod::restore_rest(RodState& s) noexcept {
 void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   x_.leftCols(s.n) = s.x.leftCols(s.n);
   theta_.head(s.n) = s.theta.head(s.n);
+  geometry_fits_ = false;
   for (ObstacleBody& b : obstacles.bodies) b.X_now = b.X_start;
   grasps.locate(memory.grasps, s);
   const double fastest = std::sqrt(s.v.leftCols(s.n).colwise().squaredNorm().maxCoeff());
@@ -130,13 +132,15 @@ void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodS
   const double length = largest_move(move_, s.n);
   if (length == 0.0) return;
   double fraction = free_fraction(s, memory, length);
+  fit_geometry(s);
   const double before = energy(s, x_, theta_, o);
   for (int k = 0; k < 2; ++k, fraction *= 0.5) {
     if (try_move(s, fraction, before, o)) break;
   }
 }
 
-/// Fraction of move_ that crosses nothing; finds the near pairs again if the move reaches beyond those known.
+/// Fraction of move_ that crosses nothing; finds the near pairs again if the move reaches beyond those known, and goes no
+/// further than they reach.
 double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept {
   double fraction = 1.0;
   if (self_contact && length > kLongestReach * material.radius) fraction = kLongestReach * material.radius / length;
@@ -144,6 +148,7 @@ double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, do
     find_near(s, memory, std::max(fraction * length, 2.0 * material.radius));
     contact_.update(x_, material.radius, contact_material);
     obstacles.update(x_, material.radius, contact_material);
+    fraction = contact_.overflowed() ? 0.0 : std::min(fraction, reach_ / length);
   }
   if (self_contact) fraction = std::min(fraction, contact_.free_fraction(x_, move_, material.radius));
   return std::min(fraction, obstacles.free_fraction(x_, move_, material.radius));
@@ -153,7 +158,9 @@ double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, do
 bool ImplicitRod::try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept {
   x_trial_.leftCols(s.n) = x_.leftCols(s.n) + fraction * move_.leftCols(s.n).topRows<3>();
   theta_trial_.head(s.n) = theta_.head(s.n) + fraction * move_.leftCols(s.n).row(3).transpose();
-  if (!(energy(s, x_trial_, theta_trial_, o) <= highest)) return false;
+  update_geometry(s, x_trial_, theta_trial_, geometry_);
+  geometry_fits_ = energy(s, x_trial_, theta_trial_, o) <= highest;
+  if (!geometry_fits_) return false;
   travelled_ += fraction * largest_move(move_, s.n);
   std::swap(x_, x_trial_);
   std::swap(theta_, theta_trial_);
@@ -163,16 +170,24 @@ bool ImplicitRod::try_move(const RodState& s, double fraction, double highest, c
 void ImplicitRod::find_near(const RodState& s, const RodMemory& memory, double reach) noexcept {
   reach_ = reach;
   travelled_ = 0.0;
-  const bool changed = self_contact && contact_.find_pairs(s, x_, material.radius, reach);
-  if (changed || pattern_n_ != s.n) rebuild_pattern(s.n);
+  if (self_contact) {  // where strands crowd, a shorter reach leaves room for every pair
+    contact_.find_pairs(s, x_, material.radius, reach_);
+    while (contact_.overflowed() && reach_ > kLeastReach * material.radius)
+      contact_.find_pairs(s, x_, material.radius, reach_ *= 0.5);
+  }
+  fit_pattern(s.n);
   double body_reach = 0.0;
   for (const ObstacleBody& b : obstacles.bodies) body_reach = std::max(body_reach, (b.X_end.p - b.X_start.p).norm());
-  obstacles.find_touches(s, x_, material.radius, reach + 1.5 * body_reach);
+  obstacles.find_touches(s, x_, material.radius, reach_ + 1.5 * body_reach);
   contact_.recall(memory.self);
   obstacles.recall(memory.obstacle);
 }
 
-void ImplicitRod::rebuild_pattern(int n) noexcept {
+void ImplicitRod::fit_pattern(int n) noexcept {
+  if (pattern_n_ == n && !contact_.pattern_stale()) {
+    contact_.find_slots(matrix_);
+    return;
+  }
   pattern_n_ = n;
   matrix_.begin_pattern(n);
   for (int i = 0; i + 1 < n; ++i) matrix_.connect(i, i + 1);
@@ -201,6 +216,7 @@ bool ImplicitRod::advance_boundary(const RodState& s) noexcept {
   double fraction = 1.0;
   if (self_contact) fraction = contact_.free_fraction(x_, boundary_move_, material.radius);
   fraction = std::min(fraction, obstacles.free_fraction(x_, boundary_move_, material.radius));
+  geometry_fits_ = false;
   x_.leftCols(s.n) += fraction * boundary_move_.leftCols(s.n).topRows<3>();
   theta_.head(s.n) += fraction * boundary_move_.leftCols(s.n).row(3).transpose();
   if (fraction == 1.0) {  // exactly on target, so that rounding cannot keep the step from arriving
@@ -265,6 +281,7 @@ double ImplicitRod::force_scale(const RodState& s) const noexcept {
 /// throw nodes about, else that of Gauss and Newton (compressed strands make it so).
 bool ImplicitRod::solve_direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept {
   for (;;) {
+    if (contact_.pattern_stale()) fit_pattern(s.n);
     assemble_stiffness(s, o, kind);
     move_.leftCols(s.n) = -gradient_.leftCols(s.n);
     if (self_contact) contact_.add_expected(material.radius, contact_material, chain_, move_, matrix_);
@@ -302,6 +319,7 @@ bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const 
   Stiffness kind = Stiffness::exact;
   if (!direction(s, o, kind, summary)) return false;
   if (advance(s, memory, o)) return true;
+  fit_geometry(s);
   contact_.forget_expected();
   obstacles.forget_expected();
   if (!solve_direction(s, o, kind, summary)) return false;
@@ -313,14 +331,21 @@ bool ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodS
   const double slope = (gradient_.leftCols(s.n).array() * move_.leftCols(s.n).array()).sum();
   if (!(slope < 0.0)) return false;
   double fraction = free_fraction(s, memory, largest_move(move_, s.n));
+  fit_geometry(s);
   const double before = energy(s, x_, theta_, o);
   for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5)
     if (try_move(s, fraction, before + 1e-4 * fraction * slope, o)) return true;
   return false;
 }
 
+/// geometry_ of the present x_ and theta_, computed anew only if something else was looked at or moved since.
+void ImplicitRod::fit_geometry(const RodState& s) noexcept {
+  if (!geometry_fits_) update_geometry(s, x_, theta_, geometry_);
+  geometry_fits_ = true;
+}
+
+/// At x and theta, whose geometry is in geometry_.
 double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept {
-  update_geometry(s, x, theta, geometry_);
   double u = elastic_energy(stiffened_, s, geometry_);
   const double rho = material.mass_per_length(), dt = o.dt;
   for (int i = 0; i < s.n; ++i) {
@@ -338,6 +363,7 @@ double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::Vect
 void ImplicitRod::finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {
   s.v.leftCols(s.n) = (x_.leftCols(s.n) - s.x.leftCols(s.n)) / o.dt;
   s.theta_dot.head(s.n) = (theta_.head(s.n) - s.theta.head(s.n)) / o.dt;
+  fit_geometry(s);
   accept_geometry(geometry_, x_, theta_, s);
   contact_.remember(memory.self);
   obstacles.remember(memory.obstacle);

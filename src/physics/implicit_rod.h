@@ -80,7 +80,7 @@ class ImplicitRod {
   void soften_rest(RodState& s, double dt) noexcept;
   void restore_rest(RodState& s) noexcept;
   void find_near(const RodState& s, const RodMemory& memory, double reach) noexcept;
-  void rebuild_pattern(int n) noexcept;
+  void fit_pattern(int n) noexcept;
   bool advance_boundary(const RodState& s) noexcept;
   void assemble_gradient(const RodState& s, const RodStepOptions& o) noexcept;
   void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
@@ -92,6 +92,7 @@ class ImplicitRod {
   double free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept;
   bool try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept;
   bool advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
+  void fit_geometry(const RodState& s) noexcept;
   double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept;
   void finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept;
 
@@ -108,6 +109,7 @@ class ImplicitRod {
   Eigen::VectorXd rest_twist_;
   double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
   double travelled_ = 0.0;
+  bool geometry_fits_ = false;  // geometry_ is that of x_ and theta_
 };
 
 }  // namespace filum

@@ -10,6 +10,7 @@
 namespace filum {
 namespace {
 
+constexpr double kJoin = 8.0;  // [radii], distance of the axes below which a pair takes part in the matrix
 constexpr int kChunk = 8;  // edges in one box of the broad phase
 
 struct Weights {
@@ -70,12 +71,11 @@ double conservative_advance(const Vec3 ends[4], const Vec3 moves[4], double keep
 RodContact::RodContact(int node_capacity, int pair_capacity)
     : low_(3, node_capacity / kChunk + 1), high_(3, node_capacity / kChunk + 1) {
   pairs_.reserve(static_cast<std::size_t>(pair_capacity));
-  previous_.reserve(static_cast<std::size_t>(pair_capacity));
+  pattern_.reserve(static_cast<std::size_t>(pair_capacity));
   arc_.reserve(static_cast<std::size_t>(node_capacity));
 }
 
-bool RodContact::find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept {
-  std::swap(pairs_, previous_);
+void RodContact::find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept {
   pairs_.clear();
   overflowed_ = false;
   const int edges = s.n - 1;
@@ -99,7 +99,8 @@ bool RodContact::find_pairs(const RodState& s, const Points& x, double radius, d
         for (int j = std::max(i + 2, b * kChunk); j < std::min(edges, (b + 1) * kChunk); ++j) {
           if (arc_[j] - arc_[i + 1] < 4.0 * radius || s.alive[i] == 0 || s.alive[j] == 0) continue;
           if (apart(low, high, x.col(j).cwiseMin(x.col(j + 1)), x.col(j).cwiseMax(x.col(j + 1)))) continue;
-          if (measure(x, i, j).distance > near) continue;
+          const double distance = measure(x, i, j).distance;
+          if (distance > near) continue;
           if (pairs_.size() == pairs_.capacity()) {
             overflowed_ = true;
             continue;
@@ -107,27 +108,48 @@ bool RodContact::find_pairs(const RodState& s, const Points& x, double radius, d
           RodPair& p = pairs_.emplace_back();
           p.i = i;
           p.j = j;
+          p.joined = distance < kJoin * radius;
         }
       }
     }
   }
   std::sort(pairs_.begin(), pairs_.end(), [](const RodPair& p, const RodPair& q) { return std::tie(p.i, p.j) < std::tie(q.i, q.j); });
-  const bool same = std::equal(pairs_.begin(), pairs_.end(), previous_.begin(), previous_.end(),
-                               [](const RodPair& p, const RodPair& q) { return p.i == q.i && p.j == q.j; });
-  if (same) std::swap(pairs_, previous_);  // keeps slots and bristles
-  return !same;
+  compare_pattern();
 }
 
-void RodContact::connect(BlockCholesky& matrix) const noexcept {
+void RodContact::compare_pattern() noexcept {
+  std::size_t joined = 0;
+  auto q = pattern_.begin();  // both are sorted by (i, j)
+  pattern_stale_ = false;
   for (const RodPair& p : pairs_) {
+    if (!p.joined) continue;
+    ++joined;
+    const std::pair key(p.i, p.j);
+    while (q != pattern_.end() && *q < key) ++q;
+    pattern_stale_ = pattern_stale_ || q == pattern_.end() || *q != key;
+  }
+  pattern_stale_ = pattern_stale_ || pattern_.size() > 2 * joined + 16;  // what left again costs fill
+}
+
+void RodContact::connect(BlockCholesky& matrix) noexcept {
+  pattern_.clear();
+  pattern_stale_ = false;
+  for (const RodPair& p : pairs_) {
+    if (!p.joined) continue;
+    pattern_.emplace_back(p.i, p.j);
     for (int a = 0; a < 2; ++a)
       for (int b = 0; b < 2; ++b) matrix.connect(p.i + a, p.j + b);
   }
 }
 
+void RodContact::join(RodPair& p, bool touches) noexcept {
+  if (p.joined || !touches) return;
+  p.joined = pattern_stale_ = true;
+}
+
 void RodContact::find_slots(const BlockCholesky& matrix) noexcept {
   for (RodPair& p : pairs_)
-    for (int k = 0; k < 4; ++k) p.slots[k] = matrix.find(p.i + k / 2, p.j + k % 2);
+    for (int k = 0; k < 4 && p.joined; ++k) p.slots[k] = matrix.find(p.i + k / 2, p.j + k % 2);
 }
 
 void RodContact::recall(const std::vector<ContactBristle>& memory) noexcept {
@@ -156,6 +178,7 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
     p.force = -pair_potential(c.distance, radius, m.stiffness).slope;
     p.load += share * (p.force - p.load);
     p.expected = false;
+    join(p, p.force > 0.0);
   }
 }
 
@@ -227,6 +250,7 @@ bool RodContact::expect(const Eigen::Matrix4Xd& move, double radius) noexcept {
     const bool touches = gap < (p.expected ? 0.0 : -1e-4 * radius);
     changed = changed || touches != p.expected;
     p.expected = touches;
+    join(p, touches);
   }
   return changed;
 }

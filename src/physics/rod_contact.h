@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "base/block_cholesky.h"
@@ -47,6 +48,7 @@ struct RodPair {
   double force = 0;                   // [N], normal
   double load = 0;                    // [N], normal force by which friction goes in this iteration
   bool expected = false;              // not touching yet, but would after the Newton step
+  bool joined = false;                // has its blocks in the matrix: near enough to touch soon
   Vec3 xi_start = Vec3::Zero();       // [m], bristle at the start of the step
   FrictionPoint friction;
   BlockCholesky::Slot slots[4];       // blocks (i,j), (i,j+1), (i+1,j), (i+1,j+1)
@@ -57,13 +59,16 @@ class RodContact {
   RodContact(int node_capacity, int pair_capacity);
 
   /// Collects all pairs of edges that can come within one diameter while every node moves at most `reach` [m]. Edges of the
-  /// same strand closer than two diameters along it are left out. True if the set of pairs changed.
-  bool find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept;
+  /// same strand closer than two diameters along it are left out. Only pairs that may touch soon are joined, that is, take
+  /// part in the matrix: most are there only to bound the move.
+  void find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept;
   const std::vector<RodPair>& pairs() const noexcept { return pairs_; }
   bool overflowed() const noexcept { return overflowed_; }
 
-  /// Declares the blocks of all pairs in the pattern; after analysis, looks the slots up.
-  void connect(BlockCholesky& matrix) const noexcept;
+  /// True if the pairs to join are not those of the last connect().
+  bool pattern_stale() const noexcept { return pattern_stale_; }
+  /// Declares the blocks of the joined pairs in the pattern; after analysis, looks the slots up.
+  void connect(BlockCholesky& matrix) noexcept;
   void find_slots(const BlockCholesky& matrix) noexcept;
 
   /// Attaches the bristles remembered from the last step to the present pairs.
@@ -97,13 +102,17 @@ class RodContact {
   int n_touching(double radius) const noexcept;
 
  private:
+  void compare_pattern() noexcept;
+  void join(RodPair& p, bool touches) noexcept;
   void add_tilt(const RodPair& p, const Points& x, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
   void add_block(const RodPair& p, const Mat3& k, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
 
-  std::vector<RodPair> pairs_, previous_;
+  std::vector<RodPair> pairs_;
+  std::vector<std::pair<int, int>> pattern_;  // edges of the last connect()
   Points low_, high_;   // boxes of chunks of edges
   std::vector<double> arc_;
   bool overflowed_ = false;
+  bool pattern_stale_ = false;
 };
 
 /// Stiffness against tilting that a pressed contact has from its geometry: turning an edge about the point where it touches a

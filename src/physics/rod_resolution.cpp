@@ -52,11 +52,12 @@ struct Near {
       if ((p.i == j || p.j == j) && p.force > 0.0) return limit;
     return otherwise;
   }
-  bool any(int j) const noexcept {
+  /// Whether another strand or a body is within `room` [m] of edge j's surface.
+  bool any(int j, double radius, double room) const noexcept {
     for (const RodPair& p : contact.pairs())
-      if (p.i == j || p.j == j) return true;
+      if ((p.i == j || p.j == j) && p.distance < 2.0 * radius + room) return true;
     for (const ObstacleTouch& t : obstacles.touches())
-      if (t.edge == j) return true;
+      if (t.edge == j && t.gap < room) return true;
     return false;
   }
 };
@@ -74,12 +75,13 @@ double height_at(const RodState& s, int i) noexcept {
   return chord.cross(Vec3(s.x.col(i) - s.x.col(i - 1))).norm() / chord.norm();
 }
 
-// Strands that are not among the near pairs are more than a diameter away, so a jump of a radius passes nothing.
+// With a diameter's room, a jump of less than a radius passes nothing.
 bool may_go(const ResolutionOptions& o, const RodState& s, const Near& near, double radius, int i) noexcept {
   if (s.alive[i - 1] == 0 || s.alive[i] == 0) return false;
   if (s.rest_length[i - 1] + s.rest_length[i] > o.longest) return false;
   if (turn_at(s, i) > o.slight_turn || turn_at(s, i - 1) + turn_at(s, i) + turn_at(s, i + 1) > 3.0 * o.slight_turn) return false;
-  return height_at(s, i) < radius && !near.any(i - 1) && !near.any(i);
+  return height_at(s, i) < radius && !near.any(i - 1, radius, 2.0 * radius) &&
+         !near.any(i, radius, 2.0 * radius);
 }
 
 }  // namespace

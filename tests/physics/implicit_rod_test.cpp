@@ -209,6 +209,35 @@ TEST(ImplicitRod, StrandsWithoutContactDoPass) {  // what the test above would s
   EXPECT_TRUE(passed);
 }
 
+// More near pairs than there is room for: the search must shorten its reach, and the moves with it, not leave pairs out.
+TEST(ImplicitRod, CrowdedStrandsDoNotPassEither) {
+  constexpr int kEach = 60;
+  Points x(3, 2 * kEach);
+  for (int i = 0; i < kEach; ++i) {
+    const double u = 10e-6 * (i - 0.5 * kEach + 0.3);
+    x.col(i) = Vec3(u, 0, 60e-6);
+    x.col(kEach + i) = Vec3(0, u, 0);
+  }
+  RodMaterial m;
+  RodState s = RodState::from_nodes(x, 2 * kEach);
+  s.alive[kEach - 1] = 0;
+  s.v.leftCols(kEach).row(2).setConstant(-0.3);  // 600 um, ten times the gap, in the first step
+  ImplicitRod rod(m, ContactMaterial(), 2 * kEach);
+  RodMemory memory = rod.make_memory();
+  RodStepOptions o;
+  o.max_iterations = 8;
+  RodContact all(2 * kEach, 100000);
+  all.find_pairs(s, s.x, m.radius, 16.0 * m.radius);
+  ASSERT_GT(all.pairs().size(), 16u * 2u * kEach) << "or the test shows nothing";
+  for (int k = 0; k < 50; ++k) {
+    const RodStepSummary summary = rod.step(s, memory, o);
+    EXPECT_FALSE(summary.crowded);
+    double above = 1.0;  // [m], of the upper strand where it crosses the lower one
+    for (int i = 0; i < kEach; ++i) above = std::min(above, s.x(2, i) - s.x.block(2, kEach, 1, kEach).minCoeff());
+    ASSERT_GT(above, 0.0) << "step " << k;
+  }
+}
+
 TEST(ImplicitRod, StepAllocatesNothing) {
   if (!FILUM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "allocations cannot be counted under a sanitizer";
   CrossedStrands c;
