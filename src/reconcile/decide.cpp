@@ -140,8 +140,11 @@ const Fit* choose(const Search& search, const Rules& rules) {
     const double fall = search.bic(before) - search.bic(*next);
     const double needed = now == nullptr ? rules.accept_evidence : rules.pair_evidence;
     const bool enough = fall >= needed && (now != nullptr || (before.chi2 - next->chi2) / search.dispersion() >= rules.detect);
-    const double share = search.explained(*next) - (now == nullptr ? 0.0 : search.explained(*now));
-    if (!enough || search.material(*next, before) < 1.0 || (now != nullptr && share < rules.pair_share && (share < rules.pair_least || search.material(*next, before) < rules.pair_material))) {
+    const double already = now == nullptr ? 0.0 : search.explained(*now), share = search.explained(*next) - already;
+    const double material = search.material(*next, before);
+    const bool earns = now == nullptr || share >= rules.pair_share || (share >= rules.pair_least && material >= rules.pair_material) ||
+                       (share >= rules.pair_clean && material >= 2.0 * rules.pair_material && share >= rules.pair_rest * (1.0 - already));
+    if (!enough || material < 1.0 || !earns) {
       if (now == nullptr) continue;  // two effects may cancel in the test of singles
       break;
     }
@@ -150,11 +153,15 @@ const Fit* choose(const Search& search, const Rules& rules) {
   return now;
 }
 
-std::vector<const Fit*> rivals_of(const Search& search, const Fit& winner, const Rules& rules) {
+std::vector<const Fit*> rivals_of(const Search& search, const Fit& winner, const Rules& rules, const std::vector<NotTestable>& hidden) {
   std::vector<const Fit*> out;
+  const bool unsure = std::any_of(winner.forms.begin(), winner.forms.end(), [&](const Form* f) {
+    return std::any_of(hidden.begin(), hidden.end(), [&](const NotTestable& n) { return n.effect == f->effect; });
+  });
+  const double tie = unsure ? rules.untestable_tie : rules.tie;
   for (const Fit& f : search.candidates()) {
     if (&f == &winner || f.forms.size() > winner.forms.size()) continue;
-    if (search.bic(f) - search.bic(winner) < rules.tie && search.explained(f) >= rules.explained) out.push_back(&f);
+    if (search.bic(f) - search.bic(winner) < tie && search.explained(f) >= rules.explained) out.push_back(&f);
   }
   return out;
 }
@@ -172,7 +179,7 @@ std::set<Effect> common(const Fit& winner, const std::vector<const Fit*>& rivals
 void say(Result& r, const std::string& sentence) { r.sentence = sentence; }
 
 void name(const Search& search, const Fit& winner, Result& r, int threads) {
-  const auto rivals = rivals_of(search, winner, r.rules);
+  const auto rivals = rivals_of(search, winner, r.rules, r.not_testable);
   const Fitter& fitter = search.fitter();
   const Challenge c = challenge(search, search.base(), winner, threads);
   r.held_out = c.gap;

@@ -14,8 +14,8 @@ namespace filum::reconcile {
 namespace {
 
 constexpr double kTwoSided = 1.96;
-constexpr double kForm = 0.012;  // relative, 1 sd: gain error of the sensor and the form of the law, which no fit can see
-constexpr double kWiden = 1.3;   // curvature understates the spread of nonlinear fits (development half)
+constexpr double kForm = 0.015;  // relative, 1 sd: gain error of the sensor and the form of the law, which no fit can see
+constexpr double kWiden = 1.5;   // curvature understates the spread of nonlinear fits (development half)
 
 Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high) {
   if (!std::isfinite(sd)) return {name, unit, value, low, high};

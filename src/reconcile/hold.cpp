@@ -176,7 +176,8 @@ NamedEffect named(const Found& f) {
   NamedEffect out{f.effect, "", {{"frequency", "Hz", f.frequency, f.frequency - 1.96 * width, f.frequency + 1.96 * width}}};
   if (f.effect == Effect::physiological_tremor) {
     out.form = "narrow band of random phase";
-    out.parameters.push_back({"rms", "m", rms, rms * (1.0 - share), rms * (1.0 + share)});
+    const double few = std::max(1.6 * share, 0.06);  // neighbouring bins of a narrow band are not independent
+    out.parameters.push_back({"rms", "m", rms, rms * (1.0 - few), rms * (1.0 + few)});
   } else {
     out.form = f.form->text;
     const double a = std::sqrt(2.0) * rms;

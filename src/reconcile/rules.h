@@ -16,7 +16,10 @@ struct Rules {
   double pair_evidence = 12.0;       // fall of BIC that a further effect must bring
   double pair_share = 0.05;          // of the structure that a further effect must explain, or
   double pair_least = 0.025;         // this share, if it changes the prediction by
-  double pair_material = 1.2;        // times the materiality (development half: less is the first effect's form error)
+  double pair_material = 1.2;        // times the materiality (development half: less is the first effect's form error), or
+  double pair_clean = 0.01;          // this share, if it also takes
+  double pair_rest = 0.80;           // of what the smaller set leaves
+  double untestable_tie = 24.0;      // tie of a name whose deciding protocol was not run
   double form_preference = 4.0;      // of BIC, by which another form must beat the one of the catalogue
   double partial_structure = 6.0;    // standard deviations left, and
   double partial_share = 0.04;       // share left, both above: "partial"

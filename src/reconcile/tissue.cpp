@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "reconcile/hereditary.h"
 #include "reconcile/model.h"
@@ -72,6 +73,7 @@ double stiffening(double e, double r, int kind, Mode mode) {
   switch (kind) {
     case 0: return shear ? 2.0 * r * e * e * e : mode == Mode::press ? 6.0 * r * e * e * e : 2.0 * r * neo * i1;
     case 1: return neo * (1.0 + 2.0 * r * i1) - e;
+    case 4: return 2.0 * r * e * i1;
     case 2: return e * std::expm1(std::min(2.0 * r * i1, 50.0));
     default: return neo * std::exp(std::min(2.0 * r * i1, 50.0)) - e;
   }
@@ -84,6 +86,7 @@ class Tissue final : public RigModel {
     for (const Trial& t : d.trials) {
       const Geometry g = geometry_of(d, t);
       for (const double u : t.at(input_)) largest_ = std::max(largest_, std::abs(u) / g.height);
+      sizes_.insert({std::lround(1e7 * g.radius), std::lround(1e7 * g.height)});
       radius_ = std::max(radius_, g.radius);
       height_ = std::max(height_, g.height);
       spans_.push_back(t.time[t.samples() - 1] - t.time[0]);
@@ -108,6 +111,7 @@ class Tissue final : public RigModel {
 
   std::string input_;
   std::vector<double> spans_;
+  std::set<std::pair<long, long>> sizes_;  // lateral and height [0.1 um]
   double largest_ = 1e-9, radius_ = 0.0, height_ = 0.0, span_ = 1.0, force_ = 1.0, area_ = 0.0, travel_ = 0.0;
 };
 
@@ -281,8 +285,8 @@ std::vector<Form> Tissue::forms() const {
   f.push_back({visco, 1, "two exponentials", {{"g1", "-", 0.005, 0.6, false}, tau, {"g2", "-", 0.005, 0.39, false}, {"tau2", "s", tiny, 10 * T, true}},
                grid({{0.2}, {0.02 * T}, {0.2}, {0.2 * T}}), false});
   const ParamSpec ratio{"c20_over_c10", "-", 1e-3 * r0, 300 * r0, true};
-  const char* names[] = {"Yeoh term added to the linear law", "Yeoh", "exponential", "Demiray"};
-  for (int k = 0; k < (data().rig == Rig::tissue_block ? 4 : 3); k += data().rig == Rig::tissue_block ? 1 : 2)
+  const char* names[] = {"Yeoh term added to the linear law", "Yeoh", "exponential", "Demiray", "linear law times 1 + 2 r (I1 - 3)"};
+  for (int k = 0; k < (data().rig == Rig::tissue_block ? 5 : 3); k += data().rig == Rig::tissue_block ? 1 : 2)
     f.push_back({Effect::strain_stiffening, k, names[k], {ratio}, {{r0}, {8 * r0}}, false});
   const ParamSpec alpha{"alpha", "-", -120.0, -0.05, false};
   f.push_back({Effect::tension_compression_asymmetry, 0, "Ogden", {alpha}, {{-5.0}, {-20.0}}, false});
@@ -299,8 +303,10 @@ std::vector<Form> Tissue::forms() const {
   };
   drain(0, "radial drainage", Dr);
   drain(1, "drainage through the height", Dh);
-  drain(2, "one exponential, lateral size", Dr);
-  drain(3, "one exponential, height", Dh);
+  if (sizes_.size() > 1) {  // of one size alone these are the relaxation of a solid under another name
+    drain(2, "one exponential, lateral size", Dr);
+    drain(3, "one exponential, height", Dh);
+  }
   const double pull = 0.05 * force_ / area_;
   const ParamSpec traction{"pull_off", "Pa", 1e-2 * pull, 30 * pull, true}, gap{"gap", "m", 1e-3 * travel_, travel_, true};
   f.push_back({Effect::contact_adhesion, 0, "elastic until the traction is passed", {traction}, {{pull}, {3 * pull}}, false});
