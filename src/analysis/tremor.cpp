@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "training/metrics.h"
 
@@ -25,6 +26,15 @@ std::vector<double> high_passed(std::vector<double> x, double fs, double fc) {
   return x;
 }
 
+/// Share of the power that the high-pass lets through: the low-pass run forwards and backwards has the response
+/// 1 / (1 + (tan(pi f / fs) / tan(pi f_0 / fs))^4), 3 dB down at f_c = (sqrt 2 - 1)^(1/4) f_0.
+double passed_power(double f, double fs, double fc) {
+  const double f0 = fc / std::pow(std::numbers::sqrt2 - 1.0, 0.25);
+  const double ratio = std::tan(std::numbers::pi * std::min(f, 0.499 * fs) / fs) / std::tan(std::numbers::pi * f0 / fs);
+  const double taken = 1.0 / (1.0 + ratio * ratio * ratio * ratio);
+  return (1.0 - taken) * (1.0 - taken);
+}
+
 Spectrum spectrum_of(const EvenPath& path, const TremorOptions& o, double high_pass) {
   std::vector<Spectrum> axes;
   for (int axis = 0; axis < 3; ++axis) {
@@ -35,7 +45,10 @@ Spectrum spectrum_of(const EvenPath& path, const TremorOptions& o, double high_p
     }
     axes.push_back(welch(stretches, path.fs, o.welch));
   }
-  return sum_of(axes);
+  Spectrum sum = sum_of(axes);
+  for (std::size_t k = 0; high_pass > 0.0 && k < sum.density.size(); ++k)
+    if (sum.frequency(k) > high_pass) sum.density[k] /= passed_power(sum.frequency(k), path.fs, high_pass);
+  return sum;
 }
 
 std::string why_not(const EvenPath& path, const TremorOptions& o) {

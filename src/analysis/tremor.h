@@ -2,8 +2,8 @@
 // Tremor of a tool that is held still, from evenly sampled stretches of its tip's path.
 //
 // Drift and voluntary movement (98.9 % of their power lies below 2 Hz: Riviere) are taken away by a high-pass without
-// phase shift, x minus its low-pass; the densities of the three axes are added (Welch, spectrum.h). Bands: 4-6, 6-12,
-// 8-12, 12-20 Hz. No standard for detecting tremor exists (Luft et al., Sensors 19 (2019) 4301); what is here is common
+// phase shift, x minus its low-pass (what that takes from the density above its cut-off is given back); the densities of
+// the three axes are added (Welch, spectrum.h). Bands: 4-6, 6-12, 8-12, 12-20 Hz. No standard for detecting tremor exists (Luft et al., Sensors 19 (2019) 4301); what is here is common
 // practice, and every setting is reported.
 //
 // A value counts only where the device can resolve it: the same analysis of a recording with the tool clamped gives the

@@ -7,7 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "analysis/report.h"
+#include "analysis/report_page.h"
 #include "base/error.h"
 #include "cli/options.h"
 #include "cli/session_files.h"
@@ -18,7 +18,7 @@ namespace {
 
 struct AnalyseOptions {
   std::vector<std::string> files, reference;
-  std::string clamped, plot;
+  std::string clamped, plot, page;
   bool json = false;
 };
 
@@ -86,17 +86,20 @@ void print_text(const nlohmann::ordered_json& report) {
   }
 }
 
+void write(const char* option, const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) throw InputError(option, "file", path, "a file that can be written");
+}
+
 int run(const AnalyseOptions& o) {
   AnalysisInput input;
   for (const std::string& file : o.files) input.sessions.push_back(open(file));
   if (!o.clamped.empty()) input.clamped = open(o.clamped);
   for (const std::string& file : o.reference) input.reference.push_back(open(file));
   const AnalysisReport report = analyse(input, program_text());
-  if (!o.plot.empty()) {
-    std::ofstream plot(o.plot);
-    plot << scatter_svg(report.panels, o.files);
-    if (!plot.flush()) throw InputError("--plot", "file", o.plot, "a file that can be written");
-  }
+  if (!o.plot.empty()) write("--plot", o.plot, scatter_svg(report.panels, o.files));
+  if (!o.page.empty()) write("--page", o.page, report_page(report));
   if (o.json) {
     print_json(report.json);
   } else {
@@ -114,6 +117,7 @@ void add_analyse(CLI::App& app, Action& action) {
   command->add_option("--clamped", o->clamped, "Recording of the same device with the tool clamped: its noise floor");
   command->add_option("--reference", o->reference, "Recordings of experts that the bands of grasp force come from");
   command->add_option("--plot", o->plot, "Write scatter plots to this SVG file");
+  command->add_option("--page", o->page, "Write the result as one HTML page to this file");
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
   command->callback([o, &action] { action.run = [o] { return run(*o); }; });
 }

@@ -1,3 +1,7 @@
-foreach(name correlation grasp_force report scatter_plot spectrum tremor)
+foreach(name correlation grasp_force report report_page scatter_plot spectrum tremor)
   filum_test(analysis/${name})
 endforeach()
+if(TARGET filum)
+  add_test(NAME laboratory.EndToEnd COMMAND ${CMAKE_CURRENT_LIST_DIR}/laboratory_test.sh $<TARGET_FILE:filum>)
+  set_tests_properties(laboratory.EndToEnd PROPERTIES TIMEOUT 300)
+endif()
