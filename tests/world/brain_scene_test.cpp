@@ -1,0 +1,114 @@
+#include "world/brain_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "world/brain_file.h"
+#include "world/model.h"
+#include "world/state.h"
+#include "world/world.h"
+
+namespace filum {
+namespace {
+
+std::shared_ptr<const Model> scene(const std::string& task) { return load_model(FILUM_SOURCE_DIR, task); }
+
+Inputs inputs_at(const World& world, const Vec3& moved) {
+  Inputs in;
+  for (int i = 0; i < world.description().n_tools; ++i) {
+    ToolInput& tool = in.tools[static_cast<std::size_t>(i)];
+    tool.X_WD = world.model().brain->blade_start[static_cast<std::size_t>(i)];
+    tool.X_WD.p += moved;
+    tool.valid = true;
+  }
+  return in;
+}
+
+/// Down to `depth` [m] below the start at 8 mm/s.
+void press(World& world, double depth, int steps) {
+  for (int k = 1; k <= steps; ++k) world.step(inputs_at(world, Vec3(0, 0, -depth * std::min(1.0, k * 0.005 * 8e-3 / depth))));
+}
+
+TEST(BrainScene, PressingRaisesForceAndPressureTogether) {
+  World world(scene("press-to-target"));
+  press(world, 11e-3, 320);
+  const BladeObservation& blade = world.observation().brain.blades[0];
+  EXPECT_GT(blade.force_W.z(), 0.1);
+  EXPECT_GT(blade.contacts, 5);
+  EXPECT_GT(blade.peak, blade.mean);
+  EXPECT_NEAR(blade.mean * blade.area, blade.force_W.norm(), 0.6 * blade.force_W.norm());  // F = P A, area at the border in part
+  EXPECT_LT((blade.push_W + blade.turn_W).norm(), 3.0 * blade.force_W.norm());
+}
+
+TEST(BrainScene, SameInputsGiveTheSameStatesAndARestoredStateGoesOnTheSame) {
+  World a(scene("press-to-target")), b(scene("press-to-target"));
+  press(a, 11e-3, 200);
+  press(b, 11e-3, 200);
+  ASSERT_EQ(a.state_hash(), b.state_hash());
+  const State kept = a.state();
+  press(a, 9e-3, 40);
+  b.restore(kept);
+  press(b, 9e-3, 40);
+  EXPECT_EQ(a.state_hash(), b.state_hash());
+}
+
+TEST(BrainScene, ABladeOnItsArmStaysAndASilentOneToo) {
+  World world(scene("press-to-target"));
+  press(world, 9e-3, 240);
+  const Vec3 place = world.observation().tools[0].X_WT.p;
+  Inputs in = inputs_at(world, Vec3(0, 0, 0.02));
+  in.tools[0].buttons = 1;
+  for (int k = 0; k < 20; ++k) world.step(in);
+  EXPECT_TRUE(world.observation().brain.blades[0].parked);
+  EXPECT_LT((world.observation().tools[0].X_WT.p - place).norm(), 1e-12);
+  in.tools[0].valid = false;
+  for (int k = 0; k < 20; ++k) world.step(in);
+  EXPECT_LT((world.observation().tools[0].X_WT.p - place).norm(), 1e-12);
+  EXPECT_FALSE(world.observation().tools[0].input_valid);
+}
+
+TEST(BrainScene, AMetreDeepTenMetresASecondAndNaNGiveSafeForces) {
+  World world(scene("press-to-target"));
+  for (int k = 0; k < 60; ++k) world.step(inputs_at(world, Vec3(0, 0, -0.05 * k)));  // 10 m/s
+  for (int k = 0; k < 60; ++k) world.step(inputs_at(world, Vec3(0, 0, -1.0)));
+  const Observation& o = world.observation();
+  EXPECT_TRUE(o.brain.positions.allFinite());
+  EXPECT_LE(o.tools[0].f_T_W.norm(), world.model().brain->strongest * (1.0 + 1e-9));
+  Inputs bad = inputs_at(world, Vec3::Zero());
+  bad.tools[0].X_WD.p.x() = std::numeric_limits<double>::quiet_NaN();
+  world.step(bad);
+  EXPECT_TRUE(o.tools[0].X_WT.finite());
+  EXPECT_FALSE(o.tools[0].input_valid);
+}
+
+TEST(BrainScene, TwoBladesOpenTheFissure) {
+  World world(scene("sylvian-opening"));
+  const auto go = [&](double y, double z, int steps) {
+    const Vec3 from = world.observation().tools[1].X_WD.p;
+    for (int k = 1; k <= steps; ++k) {
+      Inputs in = inputs_at(world, Vec3::Zero());
+      const Vec3 p = from + (Vec3(0, y, z) - from) * (double(k) / steps);
+      in.tools[0].X_WD.p = Vec3(p.x(), -p.y(), p.z());
+      in.tools[1].X_WD.p = p;
+      world.step(in);
+    }
+  };
+  go(0.3e-3, -17e-3, 120);
+  const double closed = world.observation().brain.exposed;
+  go(5e-3, -17e-3, 200);
+  EXPECT_GT(world.observation().brain.exposed, closed + 0.3);
+  EXPECT_EQ(world.observation().brain.veins_torn, 0);
+  EXPECT_LT(world.observation().brain.blades[0].force_W.y() * world.observation().brain.blades[1].force_W.y(), 0.0);
+}
+
+TEST(BrainScene, BadFilesAreRefusedByName) {
+  EXPECT_THROW(load_brain_scene(FILUM_SOURCE_DIR, "knot-square", ""), InputError);
+  EXPECT_THROW(load_brain_scene(FILUM_SOURCE_DIR, "press-to-target", std::string(FILUM_SOURCE_DIR) + "/models/spatula/straight-10.yaml"), InputError);
+  EXPECT_THROW(load_blade(std::string(FILUM_SOURCE_DIR) + "/models/brain/convexity.yaml"), InputError);
+}
+
+}  // namespace
+}  // namespace filum
