@@ -44,7 +44,8 @@ double grip_angle_of(double grip, double widest) noexcept {
 }
 
 TaskView task_view_of(const TaskStatus& s) {
-  TaskView view{s.step_name, s.step_index, s.steps, s.hint, s.elapsed, s.done, {}};
+  TaskView view{s.step_name, s.step_index, s.steps, s.hint, s.elapsed, s.done, {}, {}, s.within, {}};
+  view.target.assign(s.target.data(), s.target.data() + s.target.size());
   for (const TaskWarning& w : s.warnings) view.warnings.push_back({w.level, w.text, w.code});
   if (!s.retraction) return view;
   const PressureWatch& p = *s.retraction;
@@ -190,7 +191,7 @@ void Trainer::carry_out(const ClientMessage& message) {
     if (std::holds_alternative<PauseMessage>(message)) replay_->play(false);
     if (const auto* seek = std::get_if<SeekMessage>(&message)) replay_->seek(seek->time);
   } catch (const InputError& error) {
-    server_->publish_error({"bad-input", error.what(), "Expected " + error.expected + "."});
+    server_->publish_error({"bad-input", error.file + ": " + error.field + ": found " + error.value + ".", "Expected " + error.expected + "."});
     if (!session_ && !replay_) publish_state("idle");
   } catch (const std::exception& error) {
     server_->publish_error({"failed", error.what(), "Nothing recorded is lost. Try again; filum doctor tells more."});

@@ -3,6 +3,7 @@
 #include "server/encode_brain.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -37,7 +38,7 @@ json task_json(const TaskView& task) {
   for (const WarningView& w : task.warnings) warnings.push_back({{"level", w.level}, {"text", w.text}, {"code", w.code}});
   return {{"step_name", task.step_name}, {"step_index", task.step_index}, {"steps", task.steps},
           {"hint", task.hint},           {"elapsed", task.elapsed},       {"done", task.done},
-          {"warnings", warnings},       {"retraction", retraction_json(task.retraction)}};
+          {"warnings", warnings},       {"retraction", retraction_json(task.retraction)},        {"target", task.target},         {"within", task.within}};
 }
 
 template <class Items, class Function>
@@ -104,6 +105,18 @@ void write_cuts(FrameWriter& w, const Observation& o) {
   w.raw("]");
 }
 
+/// x y z and 1 if broken, of each.
+void write_objects(FrameWriter& w, const Observation& o) {
+  std::array<double, 4 * kMaxPellets> row{};
+  const int n = std::clamp(o.n_pellets, 0, kMaxPellets);
+  for (int k = 0; k < n; ++k) {
+    const PelletObservation& p = o.pellets[static_cast<std::size_t>(k)];
+    for (int i = 0; i < 3; ++i) row[static_cast<std::size_t>(4 * k + i)] = p.p_W[i];
+    row[static_cast<std::size_t>(4 * k + 3)] = p.broken ? 1.0 : 0.0;
+  }
+  w.raw(",\"objects\":").numbers(row.data(), 4 * n);
+}
+
 json post_json(const PostShape& post) {
   return {{"position", vector_json(post.p_W)},
           {"axis", vector_json(post.axis_W)},
@@ -136,6 +149,11 @@ std::string scene_message(const SceneDescription& scene) {
                      {"pad_length", t.pad_length},
                      {"max_angle", t.max_angle}});
   }
+  json objects = json::array();
+  for (int i = 0; i < scene.n_pellets; ++i) {
+    const PelletShape& p = scene.pellets[static_cast<std::size_t>(i)];
+    objects.push_back({{"name", p.name}, {"radius", p.radius}});
+  }
   return text_of({{"type", "scene"},
                   {"task", scene.task},
                   {"title", scene.title},
@@ -147,6 +165,8 @@ std::string scene_message(const SceneDescription& scene) {
                   {"base", scene.has_post ? post_json(scene.base) : json()},
                   {"floor_height", scene.floor_height},
                   {"tools", tools},
+                  {"objects", objects},
+                  {"field", scene.has_field ? vector_json(scene.field_W) : json()},
                   {"brain", brain_scene_json(scene.brain)},
                   {"capacity", scene.capacity}});
 }
@@ -197,6 +217,7 @@ std::string frame_body(const Observation& o, const TaskView* task, const std::ve
   }
   w.raw("],\"broken\":").flag(o.broken).raw(",\"break_edge\":").whole(o.break_edge);
   write_cuts(w, o);
+  write_objects(w, o);
   w.raw(",\"brain\":").raw(brain_frame_text(o.brain));
   w.raw(",\"overruns\":").whole(static_cast<long long>(o.overruns)).raw(",\"real_time_factor\":").number(o.real_time_factor);
   w.raw(",\"task\":").raw(task == nullptr ? "null" : text_of(task_json(*task)));

@@ -46,6 +46,8 @@ struct TaskView {
   double elapsed = 0.0;  // [s], scored time
   bool done = false;
   std::vector<WarningView> warnings;
+  std::vector<double> target;  // [m], x y z of each point; empty: none
+  double within = 0.0;         // [m]
   RetractionView retraction;
 };
 

@@ -141,6 +141,9 @@ TaskStatus TaskSession::status() const {
     const TaskStep& step = task_.steps[static_cast<std::size_t>(s.step_index)];
     s.step_name = step.name;
     s.hint = step.hint;
+    if (step.kind == StepKind::follow) s.target = step.path;
+    if (step.kind == StepKind::hold || step.kind == StepKind::place) s.target = step.at;
+    s.within = step.within;
   }
   s.elapsed = elapsed_;
   s.paused = paused_ && observed_;

@@ -30,6 +30,8 @@ struct TaskStatus {
   std::string step_name;
   std::vector<std::string> steps;  // names of all
   std::string hint;
+  Points target = Points(3, 0);    // [m], of a laboratory's step: a point, or a path to follow
+  double within = 0.0;             // [m], its reach
   double elapsed = 0.0;  // [s], scored time
   bool done = false;
   bool paused = false;                // scoring stands still

@@ -113,6 +113,8 @@ struct SceneDescription {
   std::array<ToolShape, 3> tools;
   int n_pellets = 0;
   std::array<PelletShape, kMaxPellets> pellets;
+  bool has_field = false;         // the microscope starts above field_W rather than above the post
+  Vec3 field_W = Vec3::Zero();    // [m]
   BrainDescription brain;
   int capacity = 0;               // nodes
 };

@@ -48,6 +48,26 @@ TEST(Encode, FrameHoldsTheNodesInUse) {
   EXPECT_EQ(frame.at("devices")[0].at("rejected"), 1);
 }
 
+TEST(Encode, ObjectsAndTheTargetOfTheLaboratoryAreTold) {
+  Observation o = observation_of(2, 2);
+  o.n_pellets = 2;
+  o.pellets[1] = {Vec3(0.001, 0.002, 0.003), -1, true};
+  TaskView task;
+  task.target = {0.004, 0.005, 0.006};
+  task.within = 0.0005;
+  const json frame = json::parse(frame_message(1, frame_body(o, &task, {})));
+  EXPECT_EQ(SchemaCheck().fault(frame, "ServerMessage"), "");
+  EXPECT_EQ(frame.at("objects"), json({0, 0, 0, 0, 0.001, 0.002, 0.003, 1}));
+  EXPECT_EQ(frame.at("task").at("target"), json({0.004, 0.005, 0.006}));
+  SceneDescription scene;
+  scene.n_pellets = 1;
+  scene.pellets[0] = {"fragile", 0.4e-3, 0.05, 0.15};
+  scene.has_field = true;
+  const json described = json::parse(scene_message(scene));
+  EXPECT_EQ(SchemaCheck().fault(described, "ServerMessage"), "");
+  EXPECT_EQ(described.at("objects")[0].at("radius"), 0.4e-3);
+}
+
 TEST(Encode, FrameOfABrokenNumberIsStillJson) {
   Observation o = observation_of(2, 2);
   o.positions(0, 0) = std::numeric_limits<double>::quiet_NaN();

@@ -7,6 +7,7 @@ import type { Frame, Scene } from "../messages";
 import { Brain } from "./brain";
 import { FlatShadows } from "./flat_shadows";
 import { Instrument } from "./instruments";
+import { Laboratory } from "./laboratory";
 import { kSheet, paintedMaterials, physicalMaterials, type Materials } from "./materials";
 import { ThreadTube } from "./thread";
 
@@ -25,6 +26,7 @@ export class Stage {
   private instruments: Instrument[] = [];
   private thread: ThreadTube | null = null;
   private brain: Brain | null = null;
+  private laboratory: Laboratory | null = null;
   private readonly points: { array: Float64Array } = { array: new Float64Array(0) };
   private gaps: number[] = [];
   private threadRadius = 0.0125;
@@ -74,6 +76,10 @@ export class Stage {
     this.floorHeight = message.floor_height * kMm;
     this.focusHeight = message.post ? (message.post.position[2] + message.post.radius) * kMm : this.floorHeight;
     this.centre = message.post ? [message.post.position[0] * kMm, message.post.position[1] * kMm] : [0, 0];
+    if (message.field) {
+      this.centre = [message.field[0] * kMm, message.field[1] * kMm];
+      this.focusHeight = message.field[2] * kMm;
+    }
     if (message.brain) this.focusHeight = 0;
     this.threadRadius = message.thread_radius * kMm;
     this.addSheet();
@@ -86,6 +92,8 @@ export class Stage {
     this.thread = new ThreadTube(Math.max(2, message.capacity), this.materials.thread);
     this.points.array = new Float64Array(3 * Math.max(2, message.capacity));
     this.content.add(this.thread.mesh);
+    this.laboratory = new Laboratory(message, this.materials);
+    this.content.add(this.laboratory.group);
     this.flatShadows.follow(this.content);
   }
 
@@ -100,6 +108,7 @@ export class Stage {
     this.thread?.update(points, Math.floor(count / 3), Math.max(this.threadRadius, thinnest), this.gaps);
     this.brain?.update(frame);
     for (let i = 0; i < this.instruments.length && i < frame.tools.length; ++i) this.instruments[i].update(frame.tools[i]);
+    this.laboratory?.update(frame);
   }
 
   /// Light follows the microscope: an oblique lamp beside the objective for the shadows and a weak one along the view.
@@ -136,6 +145,7 @@ export class Stage {
     this.instruments = [];
     this.thread = null;
     this.brain = null;
+    this.laboratory = null;
   }
 
   private addSheet(): void {
