@@ -4,7 +4,7 @@ import type { Frame, Scene } from "../messages";
 import type { Materials } from "./materials";
 
 const kMm = 1000;
-const kTarget = new THREE.MeshBasicMaterial({ color: 0x1f9d55, transparent: true, opacity: 0.85, toneMapped: false });
+const kTarget = new THREE.MeshBasicMaterial({ color: 0xf0a52e, transparent: true, opacity: 0.85, toneMapped: false });
 
 export class Laboratory {
   readonly group = new THREE.Group();
@@ -61,7 +61,7 @@ function dot(at: THREE.Vector3, radius: number): THREE.Mesh {
 
 function line(a: THREE.Vector3, b: THREE.Vector3): THREE.Mesh {
   const way = new THREE.Vector3().subVectors(b, a);
-  const mesh = new THREE.Mesh(new THREE.CylinderGeometry(0.03, 0.03, way.length(), 8), kTarget);
+  const mesh = new THREE.Mesh(new THREE.CylinderGeometry(0.05, 0.05, way.length(), 8), kTarget);
   mesh.position.copy(a).addScaledVector(way, 0.5);
   mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), way.normalize());
   return mesh;
