@@ -10,15 +10,12 @@
 namespace filum {
 namespace {
 
-/// A braid of three crossings is not the long one that the theory is for; it is reported as failed, and
-/// watched below.
-constexpr const char* kOutsideTheory = "overhand-knot-1";
 
 class EveryProblem : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryProblem, IsWithinTheToleranceStatedWithIt) {
-  if (GetParam() == kOutsideTheory)
-    GTEST_SKIP() << "reported as failed: outside the range of the theory; see the test below";
+  if (GetParam() == "overhand-knot-2" || GetParam() == "overhand-knot-4")
+    GTEST_SKIP() << "too long for a test; filum validate " << GetParam() << " runs it";
   const auto solved = run_validation({GetParam()});
   bool found = false;
   for (const ValidationProblem& p : solved) {
@@ -42,14 +39,6 @@ INSTANTIATE_TEST_SUITE_P(Validation, EveryProblem, testing::ValuesIn(validation_
                              if (c == '-' || c == '.') c = '_';
                            return name;
                          });
-
-TEST(Validation, TheOverhandKnotPullsAsInTheOneOtherCodeThatWasMeasured) {
-  const auto solved = run_validation({kOutsideTheory});
-  ASSERT_EQ(solved.size(), 1u);
-  EXPECT_GT(solved[0].got,
-            0.36);  // imc-der (Tong et al., arXiv 2205.10309) gave 0.36 to 0.80 of the theory for this knot
-  EXPECT_LT(solved[0].got, 0.80);
-}
 
 TEST(Validation, NamesAreUnique) {
   const auto names = validation_names();

@@ -1,0 +1,24 @@
+#pragma once
+// Overhand knots of unknotting number n (2n + 1 crossings) drawn tight: two strands in a braid of 2n + 1 half-turns, a loop and two
+// tails along the braid, as in Jawed, Dieleman, Audoly & Reis (Phys. Rev. Lett. 115:118302, 2015). One segment is one diameter long.
+
+#include "evidence/rod_probe.h"
+
+namespace filum {
+
+/// Nodes [m] of such a knot for a rod of radius h [m], one diameter apart; the ends leave along the braid, apart from each other.
+Points braid_knot_curve(int n, double h);
+
+struct BraidKnot {
+  BraidKnot(int n, double friction);
+
+  /// One step; each end moves by speed * dt.
+  RodStepSummary pull(double speed);
+  double shortening() const;  // [m], length less distance of the ends
+  double tension() const;     // [N], of the clamped tail
+
+  RodProbe probe;
+  Vec3 direction;  // unit, from the first end to the last
+};
+
+}  // namespace filum
