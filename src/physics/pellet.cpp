@@ -66,66 +66,71 @@ void Pellets::limit_jaws(const std::vector<InstrumentParameters>& tools, const s
   }
 }
 
+/// What one tool does to the object in its jaws: take, break, pull off, carry, lose.
+void Pellets::hold(int tool, const InstrumentParameters& jaws, const InstrumentState& state, double dt,
+                   std::vector<PelletState>& pellets, Vec3& force, Events& events) const noexcept {
+  const int k = between(jaws, state, pellets, tool);
+  if (k < 0) return;
+  const PelletParameters& p = parameters_[static_cast<std::size_t>(k)];
+  PelletState& s = pellets[static_cast<std::size_t>(k)];
+  const bool closed = state.angle < 1.02 * 2.0 * p.radius / jaws.jaw_length;
+  const double squeeze = state.grip_force;
+  const bool pressed = closed && squeeze > 0.0;
+  if (s.holder < 0 && !pressed) return;
+  if (s.holder < 0) {
+    s.holder = tool;
+    s.anchor_T = state.X_WT.inverse() * s.p;
+    events.say("object-taken", tool, p.slip_limit());
+  }
+  if (!pressed) {
+    events.say("object-released", tool, squeeze);
+    s.holder = -1;
+    return;
+  }
+  if (squeeze > p.strength && s.broken == 0) {
+    s.broken = 1;
+    events.say("object-broken", tool, squeeze);
+  }
+  const Vec3 anchor = state.X_WT * s.anchor_T, v = (anchor - s.p) / dt;
+  const Vec3 load = s.stuck != 0 ? Vec3(p.shear * (anchor - s.p)) : Vec3(p.mass * ((v - s.v) / dt + kGravity * Vec3::UnitZ()));
+  if (s.stuck != 0 && load.norm() > p.adhesion) s.stuck = 0;
+  if (load.norm() > 2.0 * p.friction * squeeze || s.broken != 0) {
+    events.say(s.broken != 0 ? "object-released" : "object-slipped", tool, squeeze);
+    s.escaped = tool;
+    s.holder = -1;
+    return;
+  }
+  force -= load;
+  if (s.stuck != 0) return;
+  s.v = v;
+  s.p = anchor;
+}
+
+/// An object that nobody holds falls and sticks where it lands.
+void Pellets::fall(const PelletParameters& p, double dt, PelletState& s) const noexcept {
+  if (s.holder >= 0 || s.stuck != 0) return;
+  s.v.z() -= kGravity * dt;
+  s.p += dt * s.v;
+  if (s.p.z() > sheet_ + p.radius) return;
+  s.p.z() = sheet_ + p.radius;
+  s.v.setZero();
+  s.stuck = 1;
+}
+
 int Pellets::step(const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, double dt,
                   std::vector<PelletState>& pellets, std::vector<Vec3>& force, PelletEvent* events, int room) const noexcept {
-  int n = 0;
-  const auto say = [&](const char* name, int tool, double value) {
-    if (n < room) events[n++] = {name, tool, value};
-  };
-  for (std::size_t i = 0; i < tools.size(); ++i) {
-    const int k = tools[i].kind == "scissors" ? -1 : between(tools[i], states[i], pellets, static_cast<int>(i));
-    if (k < 0) continue;
-    const PelletParameters& p = parameters_[static_cast<std::size_t>(k)];
-    PelletState& s = pellets[static_cast<std::size_t>(k)];
-    const bool closed = states[i].angle < 1.02 * 2.0 * p.radius / tools[i].jaw_length;
-    const double squeeze = states[i].grip_force;
-    if (s.holder < 0 && closed && squeeze > 0.0) {
-      s.holder = static_cast<int>(i);
-      s.anchor_T = states[i].X_WT.inverse() * s.p;
-      say("object-taken", s.holder, p.slip_limit());
-    }
-    if (s.holder < 0) continue;
-    if (!closed || squeeze <= 0.0) {
-      say("object-released", s.holder, squeeze);
-      s.holder = -1;
-      continue;
-    }
-    if (squeeze > p.strength && s.broken == 0) {
-      s.broken = 1;
-      say("object-broken", s.holder, squeeze);
-    }
-    const Vec3 anchor = states[i].X_WT * s.anchor_T;
-    const Vec3 v = (anchor - s.p) / dt;
-    Vec3 load = s.stuck != 0 ? Vec3(p.shear * (anchor - s.p))
-                             : Vec3(p.mass * ((v - s.v) / dt + kGravity * Vec3::UnitZ()));
-    if (s.stuck != 0 && load.norm() > p.adhesion) s.stuck = 0;
-    if (load.norm() > 2.0 * p.friction * squeeze || s.broken != 0) {
-      say(s.broken != 0 ? "object-released" : "object-slipped", s.holder, squeeze);
-      s.escaped = s.holder;
-      s.holder = -1;
-      continue;
-    }
-    force[i] -= load;
-    if (s.stuck != 0) continue;
-    s.v = v;
-    s.p = anchor;
-  }
+  Events said{events, room, 0};
+  for (std::size_t i = 0; i < tools.size(); ++i)
+    if (tools[i].kind != "scissors") hold(static_cast<int>(i), tools[i], states[i], dt, pellets, force[i], said);
   for (std::size_t k = 0; k < pellets.size(); ++k) {
     PelletState& s = pellets[k];
     if (s.escaped >= 0) {
       const auto tool = static_cast<std::size_t>(s.escaped);
       if (states[tool].angle > 2.0 * parameters_[k].radius / tools[tool].jaw_length) s.escaped = -1;
     }
-    if (s.holder >= 0 || s.stuck != 0) continue;
-    s.v.z() -= kGravity * dt;
-    s.p += dt * s.v;
-    const double rest = sheet_ + parameters_[k].radius;
-    if (s.p.z() > rest) continue;
-    s.p.z() = rest;
-    s.v.setZero();
-    s.stuck = 1;
+    fall(parameters_[k], dt, s);
   }
-  return n;
+  return said.n;
 }
 
 }  // namespace filum

@@ -68,6 +68,16 @@ class Pellets {
            std::vector<PelletState>& pellets, std::vector<Vec3>& force, PelletEvent* events, int room) const noexcept;
 
  private:
+  struct Events {
+    PelletEvent* list;
+    int room, n;
+    void say(const char* name, int tool, double value) noexcept {
+      if (n < room) list[n++] = {name, tool, value};
+    }
+  };
+  void hold(int tool, const InstrumentParameters& jaws, const InstrumentState& state, double dt, std::vector<PelletState>& pellets,
+            Vec3& force, Events& events) const noexcept;
+  void fall(const PelletParameters& p, double dt, PelletState& s) const noexcept;
   int between(const InstrumentParameters& tool, const InstrumentState& state, const std::vector<PelletState>& pellets,
               int holder) const noexcept;
   std::vector<PelletParameters> parameters_;
