@@ -1,5 +1,5 @@
-// The brain in the field: cortex with its vessels and wet sheen, the pressure of the blades on it in colours, blades with
-// their arms, bridging veins, the target. It draws what frames say; colours say it a second time beside the panel's words.
+// The brain in the field: cortex with its vessels and wet sheen, the pressure of the blades on it in colours, blades,
+// bridging veins, the target. It draws what frames say; colours say it a second time beside the panel's words.
 import * as THREE from "three";
 import type { BrainShape, BrainState, Frame } from "../messages";
 
@@ -43,6 +43,17 @@ function mesh(vertices: number[], triangles: number[], material: THREE.Material)
   return made;
 }
 
+/// Triangles up to kShown from the tip: what is higher would hide the field from an eye straight above, and is out of focus.
+const kShown = 0.03; // [m]
+function nearTip(vertices: number[], triangles: number[]): number[] {
+  const shown: number[] = [];
+  for (let t = 0; t + 2 < triangles.length; t += 3) {
+    const corners = triangles.slice(t, t + 3);
+    if (corners.every((i) => vertices[3 * i + 2] <= kShown)) shown.push(...corners);
+  }
+  return shown.length > 0 ? shown : triangles;
+}
+
 export class Brain {
   readonly group = new THREE.Group();
   private readonly cortex: THREE.Mesh<THREE.BufferGeometry>;
@@ -62,11 +73,7 @@ export class Brain {
     const steel = painted ? new THREE.MeshLambertMaterial({ color: 0xaab4bb, side: THREE.DoubleSide }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, side: THREE.DoubleSide });
     for (const blade of shape.blades) {
       const held = new THREE.Group();
-      const arm = new THREE.Mesh(new THREE.CylinderGeometry(1.6, 1.6, 60, 16), steel);
-      const end = blade.vertices.slice(-3).map((v) => v * kMm);
-      arm.position.set(0, end[1], end[2] + 25);
-      arm.rotation.x = Math.PI / 2;
-      held.add(mesh(blade.vertices, blade.triangles, steel), arm);
+      held.add(mesh(blade.vertices, nearTip(blade.vertices, blade.triangles), steel));
       this.blades.push(held);
       this.group.add(held);
     }

@@ -16,7 +16,7 @@ function css([r, g, b]: [number, number, number]): string { return `rgb(${[r, g,
 class Bar {
   private readonly fill = h("div", { class: "fill" });
   private readonly value = h("output", {}, "");
-  private readonly marks = h("div", { class: "marks" });
+  private readonly marks = h("div", { class: "scale" });
   readonly element: HTMLElement;
 
   constructor(private readonly label: string, private readonly unit: string) {
@@ -41,18 +41,19 @@ export class BrainPanel {
   private readonly pressure = new Bar("Pressure", "mmHg");
   private readonly dose = new Bar("Dose", "mmHg min");
   private readonly rows: HTMLElement[];
-  private readonly timer = h("output", { class: "row" }, "");
-  private readonly seen = h("output", { class: "row" }, "");
+  private readonly timer = h("output", { class: "brainrow" }, "");
+  private readonly seen = h("output", { class: "brainrow" }, "");
   private readonly note = h("p", { class: "note" }, "");
   private readonly modes: HTMLButtonElement[];
 
   constructor(scene: Scene, private readonly redraw: () => void) {
-    this.rows = (scene.brain?.blades ?? []).map(() => h("output", { class: "row" }, ""));
+    this.rows = (scene.brain?.blades ?? []).map(() => h("output", { class: "brainrow" }, ""));
     this.modes = kModes.map(([mode, label]) => h("button", { class: "segment", onclick: () => this.choose(mode) }, label));
     const stops = kPressureStops.map(([at, colour]) => `${css(colour)} ${((100 * at) / 40).toFixed(0)}%`).join(", ");
+    const ramp = h("div", { class: "ramp" });
+    ramp.style.background = `linear-gradient(90deg, ${stops})`; // the page forbids style attributes, not properties
     const legend = h("div", { class: "legend", role: "img", "aria-label": "Colours from 0 to 40 mmHg" },
-      h("div", { class: "ramp", style: `background: linear-gradient(90deg, ${stops}); height: 10px; border-radius: 3px` }),
-      h("div", { class: "ticks", style: "display: flex; justify-content: space-between" }, ...["0", "10", "20", "30", "40 mmHg"].map((t) => h("span", {}, t))));
+      ramp, h("div", { class: "brainticks" }, ...["0", "10", "20", "30", "40 mmHg"].map((t) => h("span", {}, t))));
     this.element.append(h("h2", {}, "Retraction"), this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows,
       h("div", { class: "segments", role: "group", "aria-label": "Colours of the pressure" }, ...this.modes), this.note);
     this.choose(pressureView.mode);
