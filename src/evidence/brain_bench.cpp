@@ -147,7 +147,7 @@ void bench_collision(BenchResult& r, const StepTimer& timer) {
           marked[static_cast<std::size_t>(i)] = 0;
           const Vec3 q(x(0, i), x(2, i) - p.z(), x(1, i) + 0.04);  // the blade lies along y
           if ((q.array() < blade.low.array() - 1e-3).any() || (q.array() > blade.high.array() + 1e-3).any()) continue;
-          near += nearest_point(blade, q).gap < 0.0 ? 1 : 0;
+          near += nearest_point(blade, q).gap < 0.5e-3 ? 1 : 0;
         }
       },
       [&] {

@@ -108,6 +108,5 @@ void BlockMatrix<T>::times(const Columns4& x, Columns4& y) const noexcept {
 template class BlockMatrix<double>;
 template class BlockMatrix<float>;
 template BlockMatrix<float>::BlockMatrix(const BlockMatrix<double>&);
-template BlockMatrix<double>::BlockMatrix(const BlockMatrix<double>&);
 
 }  // namespace filum
