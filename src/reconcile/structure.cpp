@@ -123,12 +123,17 @@ double replicate_dispersion(const Fitter& fitter, const Fit& fit, int length) {
 Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double high) {
   const Dataset& d = fitter.model().data();
   Line best;
-  double span = 0.0;
-  for (const Trial& t : d.trials) span = std::max(span, t.time[t.samples() - 1] - t.time[0]);
+  double span = 0.0, shortest = 1e300;
+  for (const Trial& t : d.trials) {
+    span = std::max(span, t.time[t.samples() - 1] - t.time[0]);
+    shortest = std::min(shortest, t.time[t.samples() - 1] - t.time[0]);
+  }
   const double step = 0.3 / span;
+  // a narrow band may lie wholly below the peak of a short record: the background is taken on both sides of it
+  const double beside = low > 5.0 ? std::min(8.0 / shortest, 3.0) : 0.0;
   std::vector<double> power, frequency;
   int columns = 0;
-  for (double f = low; f <= high + 1e-12 && power.size() < 4000; f += step) frequency.push_back(f);
+  for (double f = low - beside; f <= high + beside + 1e-12 && frequency.size() < 4000; f += step) frequency.push_back(f);
   power.assign(frequency.size(), 0.0);
   for (std::size_t i = 0; i < d.trials.size(); ++i) {
     if (i >= fit.residual.size() || fit.residual[i].empty()) continue;
@@ -157,7 +162,7 @@ Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double hig
   }
   const double background = std::max(1.0, median(power) / std::max(1.0, columns - 0.7));
   for (std::size_t k = 0; k < power.size(); ++k)
-    if (power[k] / background > best.gain) best = {frequency[k], power[k] / background, columns};
+    if (frequency[k] >= low && frequency[k] <= high && power[k] / background > best.gain) best = {frequency[k], power[k] / background, columns};
   return best;
 }
 
