@@ -70,7 +70,7 @@ export class Brain {
     for (let i = 0; i < shape.rest.length; i += 3) this.tissue.set(tissueColour(shape.rest[i] * kMm, shape.rest[i + 1] * kMm, shape.rest[i + 2] * kMm), i);
     this.cortex.geometry.setAttribute("color", new THREE.BufferAttribute(this.tissue.slice(), 3));
     this.group.add(this.cortex, rim(shape));
-    const steel = painted ? new THREE.MeshLambertMaterial({ color: 0xaab4bb, side: THREE.DoubleSide }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, side: THREE.DoubleSide });
+    const steel = painted ? new THREE.MeshLambertMaterial({ color: 0xaab4bb, emissive: 0x4c545a, side: THREE.DoubleSide }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, side: THREE.DoubleSide });
     for (const blade of shape.blades) {
       const held = new THREE.Group();
       held.add(mesh(blade.vertices, nearTip(blade.vertices, blade.triangles), steel));

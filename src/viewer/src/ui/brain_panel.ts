@@ -52,7 +52,7 @@ export class BrainPanel {
     const stops = kPressureStops.map(([at, colour]) => `${css(colour)} ${((100 * at) / 40).toFixed(0)}%`).join(", ");
     const ramp = h("div", { class: "ramp" });
     ramp.style.background = `linear-gradient(90deg, ${stops})`; // the page forbids style attributes, not properties
-    const legend = h("div", { class: "legend", role: "img", "aria-label": "Colours from 0 to 40 mmHg" },
+    const legend = h("div", { class: "brainlegend", role: "img", "aria-label": "Colours from 0 to 40 mmHg" },
       ramp, h("div", { class: "brainticks" }, ...["0", "10", "20", "30", "40 mmHg"].map((t) => h("span", {}, t))));
     this.element.append(h("h2", {}, "Retraction"), this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows,
       h("div", { class: "segments", role: "group", "aria-label": "Colours of the pressure" }, ...this.modes), this.note);
