@@ -108,7 +108,7 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
   const double top = scores[0].gain;
   std::vector<Effect> order;
   std::map<Effect, std::map<int, int>> used;
-  std::vector<Score> todo;
+  std::vector<Score> candidates;
   for (const Score& s : scores) {
     const Effect e = s.form->effect;
     const bool seen = std::find(order.begin(), order.end(), e) != order.end();
@@ -123,14 +123,14 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
     if (new_form && static_cast<int>(forms.size()) >= most_forms && s.form->kind != 0) continue;
     if (!new_form && forms[s.form->kind] >= (s.form->params.size() > 1 || e == Effect::saturation ? 2 : 1)) continue;
     ++forms[s.form->kind];
-    todo.push_back(s);
+    candidates.push_back(s);
   }
-  std::vector<Fit> fits(todo.size());
-  parallel(options_.threads, todo.size(), [&](std::size_t i) {
+  std::vector<Fit> fits(candidates.size());
+  parallel(options_.threads, candidates.size(), [&](std::size_t i) {
     auto forms = from.forms;
     auto params = from.params;
-    forms.push_back(todo[i].form);
-    params.push_back(todo[i].start);
+    forms.push_back(candidates[i].form);
+    params.push_back(candidates[i].start);
     fits[i] = fitter_.fit(forms, from.base, params, {from.forms.empty() ? 25 : 18, 1e-4}, &from);
   });
   return fits;
