@@ -8,6 +8,7 @@ namespace filum {
 namespace {
 
 constexpr int kMostHalvings = 14;
+constexpr int kMostTethers = 256;
 constexpr int kMostRounds = 4;  // of contact prediction in a Newton step
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
 constexpr double kLeastReach = 0.05;    // [radii], of the search for near pairs
@@ -41,7 +42,7 @@ RodBoundary::RodBoundary(int capacity)
       target(Eigen::Matrix4Xd::Zero(4, capacity)) {}
 
 ImplicitRod::ImplicitRod(const RodMaterial& m, const ContactMaterial& c, int capacity, int n_tools)
-    : material(m), contact_material(c), boundary(capacity), obstacles(8 * capacity), grasps(n_tools),
+    : material(m), contact_material(c), boundary(capacity), obstacles(8 * capacity), grasps(n_tools), tethers(kMostTethers),
       contact_(capacity, 16 * capacity), geometry_(capacity), matrix_(capacity), x_(Points::Zero(3, capacity)), x_trial_(x_),
       theta_(Eigen::VectorXd::Zero(capacity)), theta_trial_(theta_), gradient_(Eigen::Matrix4Xd::Zero(4, capacity)),
       move_(gradient_), boundary_move_(gradient_), stiffened_(m), rest_kappa_(Eigen::Matrix4Xd::Zero(4, capacity)), rest_twist_(theta_) {
@@ -114,6 +115,7 @@ void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodSte
   geometry_fits_ = false;
   for (ObstacleBody& b : obstacles.bodies) b.X_now = b.X_start;
   grasps.locate(memory.grasps, s);
+  tethers.locate(s);
   const double fastest = std::sqrt(s.v.leftCols(s.n).colwise().squaredNorm().maxCoeff());
   find_near(s, memory, std::max(2.0 * material.radius, std::min(1.5 * fastest * o.dt, 40.0 * material.radius)));
 }
@@ -244,6 +246,7 @@ void ImplicitRod::assemble_gradient(const RodState& s, const RodStepOptions& o) 
   if (self_contact) contact_.add_gradient(x_, s.x, contact_material, gradient_);
   obstacles.add_gradient(x_, s.x, material.radius, contact_material, gradient_);
   grasps.add_gradient(x_, gradient_);
+  tethers.add_gradient(x_, o.dt, gradient_);
   for (int i = 0; i < s.n; ++i)
     for (int c = 0; c < 4; ++c)
       if (boundary.held(c, i)) gradient_(c, i) = 0.0;
@@ -265,6 +268,7 @@ void ImplicitRod::assemble_stiffness(const RodState& s, const RodStepOptions& o,
   if (self_contact) contact_.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
   obstacles.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
   grasps.add_stiffness(chain_, matrix_);
+  tethers.add_stiffness(x_, o.dt, chain_, matrix_);
 }
 
 /// The largest tension or contact force [N]: what an unbalanced force is small against.
@@ -357,7 +361,7 @@ double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::Vect
     u -= boundary.load.col(i).head<3>().dot(x.col(i)) + boundary.load(3, i) * theta[i];
   }
   if (self_contact) u += contact_.energy(x, s.x, material.radius, contact_material);
-  return u + obstacles.energy(x, s.x, material.radius, contact_material) + grasps.energy(x);
+  return u + obstacles.energy(x, s.x, material.radius, contact_material) + grasps.energy(x) + tethers.energy(x, o.dt);
 }
 
 void ImplicitRod::finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {

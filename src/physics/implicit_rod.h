@@ -15,6 +15,7 @@
 #include "physics/elastic_rod.h"
 #include "physics/rod_contact.h"
 #include "physics/rod_obstacle.h"
+#include "physics/rod_tether.h"
 #include "physics/thread_grasp.h"
 
 namespace filum {
@@ -61,6 +62,7 @@ class ImplicitRod {
   RodBoundary boundary;
   RodObstacles obstacles;
   ThreadGrasps grasps;
+  RodTethers tethers;          // what soft bodies hold the thread by, filled before each step
   bool self_contact = true;
 
   /// Room for the bristles of one state.

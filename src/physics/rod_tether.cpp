@@ -1,0 +1,70 @@
+#include "physics/rod_tether.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/thread_grasp.h"
+
+namespace filum {
+namespace {
+
+Vec3 offset(const RodTether& t, const Points& x) noexcept {
+  return (1.0 - t.s) * x.col(t.edge) + t.s * x.col(t.edge + 1) - t.anchor;
+}
+
+bool slips(const RodTether& t, double u) noexcept { return t.stick * std::abs(u) > t.limit; }
+
+}  // namespace
+
+void RodTethers::locate(const RodState& s) noexcept {
+  for (RodTether& t : list) {
+    t.edge = s.n - 2;
+    t.s = 1.0;
+    if (!t.at_end) std::tie(t.edge, t.s) = locate_arc(s, t.arc);
+    t.force.setZero();
+    t.slid = 0.0;
+  }
+}
+
+double RodTethers::energy(const Points& x, double dt) const noexcept {
+  double sum = 0.0;
+  for (const RodTether& t : list) {
+    const Vec3 d = offset(t, x);
+    sum += 0.5 * d.dot(t.stiffness * d);
+    if (t.stick <= 0.0) continue;
+    const double u = d.dot(t.along), bend = t.limit / t.stick;
+    sum += slips(t, u) ? t.limit * (std::abs(u) - 0.5 * bend) : 0.5 * t.stick * u * u;
+    sum += 0.5 * t.drag / dt * (u - t.start) * (u - t.start);
+  }
+  return sum;
+}
+
+void RodTethers::add_gradient(const Points& x, double dt, Eigen::Matrix4Xd& gradient) noexcept {
+  for (RodTether& t : list) {
+    const Vec3 d = offset(t, x);
+    t.force = -(t.stiffness * d);
+    if (t.stick > 0.0) {
+      const double u = d.dot(t.along);
+      const double dry = slips(t, u) ? std::copysign(t.limit, u) : t.stick * u;
+      t.force -= (dry + t.drag / dt * (u - t.start)) * t.along;
+      t.slid = u - dry / t.stick;
+    }
+    gradient.col(t.edge).head<3>() -= (1.0 - t.s) * t.force;
+    gradient.col(t.edge + 1).head<3>() -= t.s * t.force;
+  }
+}
+
+void RodTethers::add_stiffness(const Points& x, double dt, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
+  for (const RodTether& t : list) {
+    Mat3 k = t.stiffness;
+    if (t.stick > 0.0) {
+      const double along = (slips(t, offset(t, x).dot(t.along)) ? 0.0 : t.stick) + t.drag / dt;
+      k += along * t.along * t.along.transpose();
+    }
+    matrix.add_diagonal(t.edge, pad((1.0 - t.s) * (1.0 - t.s) * k));
+    matrix.add_diagonal(t.edge + 1, pad(t.s * t.s * k));
+    matrix.add(chain.next[static_cast<std::size_t>(t.edge)], pad(t.s * (1.0 - t.s) * k));
+  }
+}
+
+}  // namespace filum
