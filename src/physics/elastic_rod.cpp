@@ -294,6 +294,21 @@ void accept_geometry(const RodGeometry& g, const Points& x, const Eigen::VectorX
   s.ref_twist.head(s.n) = g.ref_twist.head(s.n);
 }
 
+double most_elastic_curvature(double yield_strain, double radius) noexcept {
+  return 16.0 / (3.0 * std::numbers::pi) * yield_strain / radius;
+}
+
+void take_set(const RodMaterial& m, RodState& s, const RodGeometry& g) noexcept {
+  for (int i = 1; i + 1 < s.n; ++i) {
+    const double most = m.most_elastic_curvature * node_length(s, i);
+    for (int row : {0, 2}) {  // seen from the edge before and from the edge behind
+      const Eigen::Vector2d elastic = g.kappa.col(i).segment<2>(row) - s.rest_kappa.col(i).segment<2>(row);
+      const double size = elastic.norm();
+      if (size > most) s.rest_kappa.col(i).segment<2>(row) += (1.0 - most / size) * elastic;
+    }
+  }
+}
+
 double edge_tension(const RodMaterial& m, const RodState& s, int j) noexcept {
   if (!s.alive[j]) return 0.0;
   return m.EA * ((s.x.col(j + 1) - s.x.col(j)).norm() / s.rest_length[j] - 1.0);

@@ -9,9 +9,10 @@
 // with kb = 2 t^{i-1} x t^i / (1 + t^{i-1}.t^i) the curvature binormal, l_i = (L^{i-1}+L^i)/2 the node's length, m_i the
 // reference twist. The mean of the squares over both edges, not the square of the mean (2010): a straight rod's bending stiffness
 // then does not depend on its twist. Reference directors are carried in time by parallel transport from the last converged step.
-// Valid: slender rod (radius << radius of curvature, Kirchhoff), linear material. Neglects: shear, plastic kinking.
+// Valid: slender rod (radius << radius of curvature, Kirchhoff), linear material. Neglects: shear.
 // Tests: elastic_rod_test (gradient and Hessian by differences, rigid motion, order 2 in bending and twist), `filum validate`.
 
+#include <limits>
 #include <vector>
 
 #include "base/block_cholesky.h"
@@ -29,6 +30,7 @@ struct RodMaterial {
   double friction = 0.2;         // [-], thread on thread
   double strength = 0.19;        // [N], tension at which it parts
   double internal_friction = 0.0;  // [s], Kelvin-Voigt time of bending and twisting: moment = EI (kappa + time dkappa/dt)
+  double most_elastic_curvature = std::numeric_limits<double>::infinity();  // [1/m], what is bent further stays bent: see take_set
   double drag = 2.6e-5;          // [N s/m2], air drag per length and speed, slender body (Cox 1970, J. Fluid Mech. 44:791)
 
   /// Solid round wire of a linear isotropic material: E [Pa], Poisson's ratio [-].
@@ -92,6 +94,15 @@ void add_elastic_hessian(const RodMaterial& m, const RodState& s, const RodGeome
 
 /// Accepts a converged configuration: positions, angles and reference frames move into `s` (velocities are the caller's).
 void accept_geometry(const RodGeometry& g, const Points& x, const Eigen::VectorXd& theta, RodState& s) noexcept;
+
+/// Plastic set. A bending moment beyond M_p = EI most_elastic_curvature cannot be carried: the rest curvature follows until the elastic
+/// part is down to the limit (return mapping of a perfectly plastic hinge; Simo, Hughes, Computational Inelasticity, 1998, ch. 1.2).
+/// A solid round section first yields at curvature eps_y/r and carries M_p = 16/(3 pi) times that moment when yielded throughout (Horne,
+/// Plastic Theory of Structures, 1979, ch. 1). Neglects: the gradual rounding between the two, hardening, yield in twist and tension.
+void take_set(const RodMaterial& m, RodState& s, const RodGeometry& g) noexcept;
+
+/// 16/(3 pi) yield_strain / radius [1/m].
+double most_elastic_curvature(double yield_strain, double radius) noexcept;
 
 /// Axial force [N] in edge j, positive in tension.
 double edge_tension(const RodMaterial& m, const RodState& s, int j) noexcept;

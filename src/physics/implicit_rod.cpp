@@ -369,6 +369,7 @@ void ImplicitRod::finish(RodState& s, RodMemory& memory, const RodStepOptions& o
   s.theta_dot.head(s.n) = (theta_.head(s.n) - s.theta.head(s.n)) / o.dt;
   fit_geometry(s);
   accept_geometry(geometry_, x_, theta_, s);
+  take_set(material, s, geometry_);
   contact_.remember(memory.self);
   obstacles.remember(memory.obstacle);
   grasps.update_points(memory.grasps);

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/yaml_file.h"
 #include "world/brain_file.h"
+#include "world/measured_model.h"
 #include "world/world.h"
 
 namespace filum {
@@ -128,6 +129,7 @@ RodMaterial load_suture(const std::string& path, ContactMaterial& contact) {
   m.friction = measured(file, "friction_coefficient", "-", Range::between(0.0, 2.0));
   m.strength = measured(file, "strength", "N", Range::positive());
   m.drag = measured(file, "air_drag", "N.s/m2", Range::not_negative());
+  m.most_elastic_curvature = most_elastic_curvature(measured(file, "yield_strain", "-", Range::positive()), m.radius);
   m.internal_friction = measured(file, "internal_friction", "ms", Range::not_negative());
   contact.stiffness = measured(file, "squeeze_stiffness", "N/m", Range::positive());
   contact.friction = m.friction;
@@ -177,9 +179,14 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   d.title = scene.text("title");
   const std::string suture = scene.text("suture");
   const std::string suture_file = "models/suture/" + suture + ".yaml";
-  d.suture = model_file.empty() ? suture : std::filesystem::path(model_file).stem().string();
-  m->thread = load_suture(model_file.empty() ? root + "/" + suture_file : model_file, m->contact);
-  m->sources.push_back(model_file.empty() ? suture_file : model_file);
+  const bool own = model_file.empty() || MeasuredModel::is_one(model_file);
+  d.suture = own ? suture : std::filesystem::path(model_file).stem().string();
+  m->thread = load_suture(own ? root + "/" + suture_file : model_file, m->contact);
+  m->sources.push_back(own ? suture_file : model_file);
+  if (own && !model_file.empty()) {
+    MeasuredModel::load(model_file).apply_to_thread(*m);
+    m->sources.push_back(model_file);
+  }
   d.thread_radius = m->thread.radius;
   d.thread_strength = m->thread.strength;
   read_resolution(scene.map("resolution"), m->resolution, d.capacity);

@@ -229,5 +229,34 @@ TEST(ElasticRod, ParallelTransportKeepsLengthAndAngle) {
   EXPECT_NEAR(moved.dot(a.cross(b)), d.dot(a.cross(b)), 1e-14);
 }
 
+// A wire wound on a mandrel past its elastic limit springs back by the limit and no further: 1/R_free = 1/R - kappa_limit.
+TEST(ElasticRod, KeepsASetWhenBentBeyondItsLimit) {
+  constexpr int n = 41;
+  constexpr double radius = 12.5e-6, limit_strain = 0.05, mandrel = 60e-6;
+  const double limit = most_elastic_curvature(limit_strain, radius);
+  EXPECT_NEAR(limit, 16.0 / (3.0 * kPi) * limit_strain / radius, 1e-9 * limit);
+  ASSERT_GT(1.0 / mandrel, limit);
+  RodMaterial m = RodMaterial::round_wire(radius, 2.5e9, 0.37, 1140.0);
+  Points straight = Points::Zero(3, n), wound(3, n);
+  constexpr double step = 0.1;  // [rad] between nodes
+  for (int i = 0; i < n; ++i) {
+    straight(0, i) = i * 2.0 * mandrel * std::sin(0.5 * step);
+    wound.col(i) = mandrel * Vec3(std::sin(i * step), 1.0 - std::cos(i * step), 0.0);
+  }
+  RodGeometry g(n);
+  for (bool yields : {false, true}) {
+    m.most_elastic_curvature = yields ? limit : std::numeric_limits<double>::infinity();
+    RodState s = RodState::from_nodes(straight, n);
+    update_geometry(s, wound, s.theta, g);
+    accept_geometry(g, wound, s.theta, s);
+    take_set(m, s, g);
+    const double kept = s.rest_kappa.col(n / 2).head<2>().norm() / s.rest_length[0];
+    EXPECT_NEAR(kept, yields ? 1.0 / mandrel - limit : 0.0, 0.003 / mandrel) << yields;
+    const Eigen::Matrix4Xd before = s.rest_kappa;
+    take_set(m, s, g);
+    EXPECT_LT((s.rest_kappa - before).cwiseAbs().maxCoeff(), 1e-12) << "nothing more flows at the limit";
+  }
+}
+
 }  // namespace
 }  // namespace filum
