@@ -36,6 +36,15 @@ std::vector<std::vector<int>> neighbours(const TetMesh& m, bool two_rings) {
   return far;
 }
 
+void check_relaxation(const std::vector<RelaxationTerm>& terms, const std::string& file) {
+  double sum = 0.0;
+  for (const RelaxationTerm& t : terms) {
+    sum += t.share;
+    if (!(t.share > 0.0 && sum < 1.0)) throw InputError(file, "relaxing share", std::to_string(t.share), "shares above 0 that sum to less than 1");
+    if (!(t.time > 0.0)) throw InputError(file, "relaxation time", std::to_string(t.time), "a time above 0 s");
+  }
+}
+
 }  // namespace
 
 void check_material(const FemMaterial& m, const std::string& file) {
@@ -60,8 +69,7 @@ LinearFem::LinearFem(TetMesh mesh, std::vector<FemMaterial> regions, const FemOp
   for (int e = 0; e < mesh_.n_tets(); ++e)
     if (mesh_.region_of(e) >= static_cast<int>(regions_.size()))
       throw InputError(file, "element " + std::to_string(e), "region " + std::to_string(mesh_.region_of(e)), "a region with a material");
-  if (!(options.relaxing_share >= 0.0 && options.relaxing_share < 1.0 && options.relaxation_time > 0.0))
-    throw InputError(file, "relaxing_share", std::to_string(options.relaxing_share), "0 up to but not 1, with a time above 0 s");
+  check_relaxation(options.relaxation, file);
   if (!(options.dt > 0.0)) throw InputError(file, "dt", std::to_string(options.dt), "a time step above 0 s");
   K_ = BlockMatrix<double>(neighbours(mesh_, options.averaged_pressure));
   held_.assign(static_cast<std::size_t>(mesh_.n_nodes()), 0);
@@ -157,7 +165,7 @@ void LinearFem::hold(std::span<const int> nodes) {
 FemState LinearFem::rest() const {
   FemState s;
   s.u = s.v = s.a = Points::Zero(3, mesh_.n_nodes());
-  s.w = Points::Zero(3, options_.relaxing_share > 0.0 ? mesh_.n_nodes() : 0);
+  s.w = Points::Zero(3, static_cast<Eigen::Index>(options_.relaxation.size()) * mesh_.n_nodes());
   s.removed.assign(static_cast<std::size_t>(mesh_.n_tets()), 0);
   return s;
 }
@@ -173,11 +181,11 @@ FemSummary LinearFem::solve(FemState& s, std::span<MovedNode> moved, bool dynami
 
 FemSummary LinearFem::step(FemState& s, std::span<MovedNode> moved, const Points* loads) noexcept {
   const double dt = options_.dt, alpha = options_.mass_damping, beta = options_.stiffness_damping;
-  const bool relaxes = s.w.cols() > 0;
   work_.topRows<3>() = beta * s.v - s.u;
-  if (relaxes) {
-    s.w += (1.0 - std::exp(-dt / options_.relaxation_time)) * (s.u - s.w);
-    work_.topRows<3>() += options_.relaxing_share * s.w;
+  for (std::size_t k = 0; k < options_.relaxation.size(); ++k) {
+    auto w = s.w.middleCols(static_cast<Eigen::Index>(k) * s.u.cols(), s.u.cols());
+    w += (1.0 - std::exp(-dt / options_.relaxation[k].time)) * (s.u - w);
+    work_.topRows<3>() += options_.relaxation[k].share * w;
   }
   if (options_.single_precision) solvers_->narrow.times(work_, right_);
   else K_.times(work_, right_);

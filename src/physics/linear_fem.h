@@ -15,9 +15,10 @@
 // (a linear element that turns pushes back), nu < 0.5. Plain linear tetrahedra lock: nu = 0.45 bends 39 % too stiffly with
 // 4 elements through the thickness; `averaged_pressure` takes the volume change averaged over the elements about each node
 // (Bonet & Burton, Commun. Numer. Meth. Eng. 14:437, 1998), which cures it at five times the matrix.
-// Relaxation at a fixed exposure: a share g of the stiffness is a spring in series with a dashpot, so that the elastic force is
-// K (u - g w), w' = (u - w)/tau, which is exact for a linear solid held still: force = K u (1 - g (1 - exp(-t/tau))). Hongo
-// et al. measured that the pressure halves in 6.6 minutes; w stays for a while, so a second retraction relaxes less.
+// Relaxation at a fixed exposure: shares g_i of the stiffness are springs in series with dashpots, so that the elastic force is
+// K (u - sum g_i w_i), w_i' = (u - w_i)/tau_i (a Prony series), which is exact for a linear solid held still: force =
+// K u (1 - sum g_i (1 - exp(-t/tau_i))). w_i is advanced with the u of the last step: an error of dt/tau_i at most.
+// Hongo et al. measured that the pressure halves in 6.6 minutes; w stays for a while, so a second retraction relaxes less.
 // Elements can be taken out between steps; nothing is precomputed that this would spoil. Test: linear_fem_test.
 
 #include <memory>
@@ -39,12 +40,17 @@ struct FemMaterial {
 /// Throws InputError where a value makes no solid: young <= 0, poisson outside (-1, 0.5), density <= 0, not finite.
 void check_material(const FemMaterial& m, const std::string& file);
 
+/// One term of the relaxation: this share of the stiffness goes with this time.
+struct RelaxationTerm {
+  double share = 0.0;    // g_i [-]
+  double time = 360.0;   // tau_i [s]
+};
+
 struct FemOptions {
   double dt = 2e-3;                // [s]
   double mass_damping = 0.0;       // a [1/s]
   double stiffness_damping = 0.0;  // b [s]
-  double relaxing_share = 0.0;     // g [-], 0 to 1; 0: none
-  double relaxation_time = 360.0;  // tau [s]
+  std::vector<RelaxationTerm> relaxation;  // empty: none; the shares sum to less than 1
   bool averaged_pressure = false;
   bool single_precision = false;   // of the matrix a step reads; sums stay in double
   FemSolverOptions solver;
@@ -52,7 +58,7 @@ struct FemOptions {
 
 struct FemState {
   Points u, v, a;               // [m], [m/s], [m/s2], 3 x n
-  Points w;                     // [m], 3 x n, relaxed displacement; 3 x 0 where nothing relaxes
+  Points w;                     // [m], 3 x (n terms), relaxed displacements, term by term; 3 x 0 where nothing relaxes
   std::vector<char> removed;    // of each element
 };
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/yaml_file.h"
 #include "world/brain_scene.h"
+#include "world/measured_model.h"
 
 namespace filum {
 namespace {
@@ -96,8 +97,8 @@ void read_brain(const std::string& path, BrainModel& m) {
   for (FemMaterial& tissue : m.regions) tissue.young *= dial;
   m.fem.mass_damping = measured(file, "mass_damping", "1/s", Range::not_negative());
   m.fem.stiffness_damping = measured(file, "stiffness_damping", "ms", Range::not_negative());
-  m.fem.relaxing_share = measured(file, "relaxing_share", "-", Range::between(0.0, 0.99));
-  m.fem.relaxation_time = measured(file, "relaxation_time", "s", Range::positive());
+  const RelaxationTerm term{measured(file, "relaxing_share", "-", Range::between(0.0, 0.99)), measured(file, "relaxation_time", "s", Range::positive())};
+  if (term.share > 0.0) m.fem.relaxation = {term};
   m.contact.friction = measured(file, "friction", "-", Range::between(0.0, 2.0));
   m.contact.reach = file.quantity("reach", "mm", Range::positive());
   read_veins(file, m);
@@ -154,9 +155,10 @@ std::shared_ptr<const Model> load_brain_scene(const std::string& root, const std
   d.title = scene.text("title");
   const std::string named = "models/brain/" + scene.text("brain") + ".yaml";
   d.suture = "none";
-  m->sources.push_back(model_file.empty() ? named : model_file);
-  read_brain(model_file.empty() ? root + "/" + named : model_file, *brain);
-  if (!scene.flag_or("relaxation", true)) brain->fem.relaxing_share = 0.0;
+  const bool own = model_file.empty() || MeasuredModel::is_one(model_file);
+  m->sources.push_back(own ? named : model_file);
+  read_brain(own ? root + "/" + named : model_file, *brain);
+  if (!scene.flag_or("relaxation", true)) brain->fem.relaxation.clear();
   brain->time_compression = scene.number_or("time_compression", 1.0, Range::between(1.0, 60.0));
   if (scene.has("target")) {
     const YamlNode target = scene.map("target");
@@ -165,6 +167,10 @@ std::shared_ptr<const Model> load_brain_scene(const std::string& root, const std
   }
   read_blades(root, scene, *m, *brain);
   d.dt = m->step.dt = brain->fem.dt = scene.quantity("step", "ms", {5e-4, 2e-2});
+  if (own && !model_file.empty()) {
+    MeasuredModel::load(model_file).apply(*brain, d.dt, brain->time_compression);
+    m->sources.push_back(model_file);
+  }
   brain->fem.single_precision = true;
   brain->fem.solver.relative = scene.number_or("residual", 1e-3, Range::between(1e-12, 1e-2));
   brain->fem.solver.max_iterations = scene.integer_or("iterations", 60, 1, 10000);

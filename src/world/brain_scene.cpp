@@ -50,7 +50,7 @@ RigidSurface surface_of(const BladeShape& shape) {
 }
 
 FemOptions compressed(FemOptions o, double factor) {
-  o.relaxation_time /= factor;
+  for (RelaxationTerm& t : o.relaxation) t.time /= factor;
   return o;
 }
 

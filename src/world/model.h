@@ -22,6 +22,7 @@ struct Model {
   std::vector<PostShape> lips;     // thin bars along the mouth of the slit: they keep the thread's direction
   double post_friction = 0.3;      // [-], thread on the post and the sheet
   double jaw_friction = 0.15;      // [-], thread on the outside of polished jaws
+  double rest_curvature = 0.0;     // [1/m], of the thread, kept from its packet, in the plane of the sheet
   Points thread_path;              // [m], 3 x n, first shape of the thread, short end first
   ResolutionOptions resolution;
   RodStepOptions step;

@@ -5,6 +5,7 @@
 
 #include "world/brain_scene.h"
 #include "world/fixtures.h"
+#include "world/measured_model.h"
 #include "world/model.h"
 #include "world/observe.h"
 #include "world/state.h"
@@ -69,6 +70,7 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
   }
   const auto n_tools = model->instruments.size();
   state.thread = RodState::from_nodes(model->thread_path, model->description.capacity);
+  if (model->rest_curvature != 0.0) curl(state.thread, model->rest_curvature);
   state.memory = rod.make_memory();
   commands.resize(n_tools);
   for (std::size_t i = 0; i < n_tools; ++i) {

@@ -305,8 +305,7 @@ TEST(LinearFem, ForceOfAFixedExposureRelaxesByItsShareAndTime) {
   options.mass_damping = 20.0;
   options.stiffness_damping = 2e-3;
   options.solver.relative = 1e-6;
-  options.relaxing_share = 0.75;
-  options.relaxation_time = 2.0;
+  options.relaxation = {{0.75, 2.0}};
   TetMesh mesh = irregular_block(3);
   mesh.nodes *= 0.03;
   LinearFem fem(mesh, {{}}, options);

@@ -1,3 +1,3 @@
-foreach(name brain_scene cortex fixtures observe pull_test scene_file state_hash world)
+foreach(name brain_scene cortex fixtures measured_model observe pull_test scene_file state_hash world)
   filum_test(world/${name})
 endforeach()

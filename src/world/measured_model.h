@@ -1,0 +1,48 @@
+#pragma once
+// A model as `filum reconcile` writes it (filum-model/1: a rig's baseline with the effects its measurements showed) put into a scene.
+//   tissue-block, spatula-press -> a scene with a brain: youngs_modulus of the grey matter, white keeping its ratio to grey,
+//     poissons_ratio of both; viscoelastic-relaxation as a Prony series in place of the scene's own relaxation, with the modulus that of
+//     a sudden load (g(0) = 1), as in the rig.
+//   suture-cantilever, suture-pull -> a scene with a thread: youngs_modulus scales EA, EI and GJ by E pi d^4/64 over the scene's EI;
+//     friction_coefficient is thread on thread; rest-curvature is the thread's, in the plane of the sheet.
+// Whatever the scene cannot show is refused; `on: false` at an effect, or at the top for the whole file, leaves it out, and what is
+// left out takes no part: the scene's states are then bit for bit those without the file. Test: measured_model_test.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/elastic_rod.h"
+#include "physics/linear_fem.h"
+
+namespace filum {
+
+class YamlNode;
+struct BrainModel;
+struct Model;
+
+class MeasuredModel {
+ public:
+  /// Throws InputError where the file is not of this form or asks for an effect that no scene shows.
+  static MeasuredModel load(const std::string& path);
+  /// Whether a file says that it is one; false for anything that cannot be read.
+  static bool is_one(const std::string& path);
+
+  /// `dt` [s] of the scene, in scene seconds of which `compression` make a second. Relaxation within ten steps is taken as done at once.
+  void apply(BrainModel& brain, double dt, double compression) const;
+  void apply_to_thread(Model& scene) const;
+
+ private:
+  void read_effect(const YamlNode& effect);
+  [[noreturn]] void refuse_rig(const std::string& scene, const std::string& rigs) const;
+
+  std::string file_, rig_;
+  bool on_ = true;
+  std::optional<double> young_, poisson_, friction_, curvature_;  // [Pa], [-], [-], [1/m]
+  std::vector<RelaxationTerm> relaxation_;
+};
+
+/// Gives a thread a natural curvature [1/m] in the horizontal plane, towards the left of its direction.
+void curl(RodState& thread, double curvature);
+
+}  // namespace filum
