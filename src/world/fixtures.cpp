@@ -16,8 +16,10 @@ void add_fixtures(const Model& model, RodObstacles& obstacles) {
     o.friction = model.post_friction;
     obstacles.obstacles.push_back(o);
   };
-  add_bar(model.description.post);
-  add_bar(model.description.base);
+  if (model.description.has_post) {
+    add_bar(model.description.post);
+    add_bar(model.description.base);
+  }
   for (const PostShape& lip : model.lips) add_bar(lip);
   Obstacle sheet;
   sheet.kind = Obstacle::Kind::plane;

@@ -13,7 +13,8 @@
 
 namespace filum {
 
-struct BrainModel;  // world/brain_model.h
+struct BrainModel;   // world/brain_model.h
+struct NeedleModel;  // world/needle_model.h
 
 struct Model {
   SceneDescription description;
@@ -30,6 +31,7 @@ struct Model {
   std::vector<Pose> instrument_start;
   std::vector<PelletParameters> pellets;  // small objects to be picked up; most scenes have none
   std::shared_ptr<const BrainModel> brain;  // instead of the thread, in scenes of brain retraction
+  std::shared_ptr<const NeedleModel> needle;  // swaged to the long end of the thread; most scenes have none
   std::vector<std::string> sources;  // files it was read from, relative to the root
 };
 

@@ -9,6 +9,7 @@
 
 #include "base/pose.h"
 #include "world/brain_observation.h"
+#include "world/needle_observation.h"
 
 namespace filum {
 
@@ -27,7 +28,7 @@ struct ToolObservation {
 
 /// Something that happened in a step. `name` is one of the constants in kEventNames (static storage).
 struct WorldEvent {
-  const char* name = "";          // "grasp", "release", "drop", "cut", "thread-break", "thread-overload", "overrun", "solver-trouble", "input-lost", "input-back", "object-taken" (value: least squeeze that holds), "object-released", "object-slipped", "object-broken" (value: squeeze)
+  const char* name = "";          // "grasp", "release", "drop", "cut", "thread-break", "thread-overload", "overrun", "solver-trouble", "input-lost", "input-back", "object-taken" (value: least squeeze that holds), "object-released", "object-slipped", "object-broken" (value: squeeze), "needle-taken" (value: share of its length from the swage), "needle-released", "needle-dropped", "puncture", "tear"
   int tool = -1;                  // tool index or -1
   double value = 0.0;             // what the event measured, unit below
   const char* unit = "-";
@@ -59,6 +60,8 @@ struct Observation {
   int n_pellets = 0;
   std::array<PelletObservation, kMaxPellets> pellets;
   BrainObservation brain;
+  NeedleObservation needle;
+  TissueObservation tissue;
   int n_contacts = 0;             // self-contacts
   double min_gap = 0.0;           // [m], smallest surface distance between strands (negative: compressed)
   int newton_iterations = 0;
@@ -116,6 +119,8 @@ struct SceneDescription {
   bool has_field = false;         // the microscope starts above field_W rather than above the post
   Vec3 field_W = Vec3::Zero();    // [m]
   BrainDescription brain;
+  NeedleDescription needle;
+  TissueDescription tissue;
   int capacity = 0;               // nodes
 };
 

@@ -7,6 +7,7 @@
 #include "base/yaml_file.h"
 #include "world/brain_file.h"
 #include "world/measured_model.h"
+#include "world/needle_file.h"
 #include "world/world.h"
 
 namespace filum {
@@ -192,10 +193,13 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   read_resolution(scene.map("resolution"), m->resolution, d.capacity);
   const YamlNode thread = scene.map("thread");
   m->thread_path = read_thread_path(thread, m->resolution.longest);
-  d.post = read_bar(scene.map("post"));
-  d.base = read_bar(scene.map("base"));
+  if (scene.has("needle")) read_needle(root, scene.map("needle"), *m);
+  d.has_post = scene.has("post") || !m->needle;
+  if (d.has_post) {
+    d.post = read_bar(scene.map("post"));
+    d.base = read_bar(scene.map("base"));
+  }
   for (const YamlNode& lip : scene.items_or_none("lips")) m->lips.push_back(read_bar(lip));
-  d.has_post = true;
   d.floor_height = scene.quantity("floor", "mm");
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
   m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));

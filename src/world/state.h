@@ -7,6 +7,7 @@
 
 #include "physics/implicit_rod.h"
 #include "physics/instrument.h"
+#include "physics/needle.h"
 #include "world/brain_model.h"
 #include "physics/pellet.h"
 
@@ -21,6 +22,8 @@ struct State {
   std::array<std::int32_t, 3> armed{};      // jaws have been open since they last closed: they may take the thread
   std::array<std::int32_t, 3> valid{};      // the device was live in the last step
   std::vector<PelletState> pellets;
+  NeedleState needle;                       // of scenes with one
+  std::int32_t has_needle = 0;
   double overloaded = 0.0;                  // [N], highest tension since the last overload event, 0 when below
   double cut_low = -1.0, cut_high = -1.0;   // [m], arc of the cuts below and above the post, -1 none
   BrainState brain;                         // empty in scenes without one

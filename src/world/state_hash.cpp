@@ -69,6 +69,17 @@ std::uint64_t hash_pellets(const State& s, std::uint64_t h) noexcept {
   return h;
 }
 
+std::uint64_t hash_needle(const NeedleState& n) noexcept {
+  std::uint64_t h = hash_pose(n.X_WN, 0);
+  for (const Vec3* v : {&n.v, &n.w}) h = hash_bytes(v->data(), 3 * sizeof(double), h);
+  for (const NeedleGrip& g : n.grips) {
+    const std::array<double, 4> row = {static_cast<double>(g.held), g.arc, g.half, g.roll};
+    h = hash_bytes(row.data(), sizeof(row), h);
+    for (const Vec3& a : g.anchor_T) h = hash_bytes(a.data(), 3 * sizeof(double), h);
+  }
+  return hash_bytes(n.sheet_bristle.data(), sizeof(double) * static_cast<std::size_t>(n.sheet_bristle.size()), h);
+}
+
 std::uint64_t hash_flags(const State& s) noexcept {
   const std::array<double, 5> row = {s.thread.arc_start, s.overloaded, s.cut_low, s.cut_high, s.break_arc};
   std::uint64_t h = hash_bytes(row.data(), sizeof(row), s.step);
@@ -106,6 +117,10 @@ std::array<std::uint64_t, kArrays> hashes(const State& s) noexcept {
 std::uint64_t hash_state(const State& s) noexcept {
   const auto all = hashes(s);
   std::uint64_t h = hash_bytes(all.data(), sizeof(all));
+  if (s.has_needle != 0) {
+    const std::uint64_t needle = hash_needle(s.needle);
+    h = hash_bytes(&needle, sizeof needle, h);
+  }
   if (s.brain.blades.empty()) return h;
   for (const auto& [name, hash] : brain_hashes(s.brain)) h = hash_bytes(&hash, sizeof hash, h);
   return h;
@@ -115,6 +130,7 @@ std::vector<std::pair<std::string, std::uint64_t>> array_hashes(const State& s) 
   const auto all = hashes(s);
   std::vector<std::pair<std::string, std::uint64_t>> named;
   for (std::size_t k = 0; k < kArrays; ++k) named.emplace_back(kNames[k], all[k]);
+  if (s.has_needle != 0) named.emplace_back("needle", hash_needle(s.needle));
   if (!s.brain.blades.empty())
     for (const auto& [name, hash] : brain_hashes(s.brain)) named.emplace_back(name, hash);
   return named;

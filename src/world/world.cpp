@@ -7,6 +7,7 @@
 #include "world/fixtures.h"
 #include "world/measured_model.h"
 #include "world/model.h"
+#include "world/needle_scene.h"
 #include "world/observe.h"
 #include "world/state.h"
 #include "world/state_hash.h"
@@ -30,6 +31,7 @@ struct World::Impl {
   std::vector<InstrumentCommand> commands;
   RodStepSummary solver;
   std::unique_ptr<BrainScene> brain;  // in scenes of brain retraction: then it takes the whole step
+  std::unique_ptr<NeedleScene> needle;  // in scenes with one
   Observation observation;
 
   explicit Impl(std::shared_ptr<const Model> m);
@@ -86,6 +88,11 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
       bar.friction = model->jaw_friction;
       rod.obstacles.obstacles.push_back(bar);
     }
+  }
+  if (model->needle) {
+    needle = std::make_unique<NeedleScene>(*model);
+    state.needle = needle->start();
+    state.has_needle = 1;
   }
   state.pellets = pellets.start();
   state.force.assign(n_tools, Vec3::Zero());
@@ -150,6 +157,7 @@ void World::Impl::read_inputs(const Inputs& inputs) noexcept {
 void World::Impl::move_instruments() noexcept {
   for (std::size_t i = 0; i < commands.size(); ++i) rod.obstacles.bodies[i].X_start = state.instruments[i].X_WT;
   if (!pellets.empty()) pellets.limit_jaws(model->instruments, state.instruments, state.pellets, commands);
+  if (needle) needle->limit_jaws(state, commands);
   instruments.step(state.instruments, commands, state.force, state.torque, model->step.dt);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     ObstacleBody& body = rod.obstacles.bodies[i];
@@ -169,7 +177,9 @@ void World::Impl::move_instruments() noexcept {
 }
 
 void World::Impl::open_and_close_jaws() noexcept {
+  if (needle) needle->meet_tools(state, rod.obstacles.bodies, observation);
   for (int i = 0; i < static_cast<int>(commands.size()); ++i) {
+    if (needle && NeedleScene::held_by(state, i)) continue;
     const double gap = tip_gap(i);
     auto& armed = state.armed[static_cast<std::size_t>(i)];
     if (gap > kLeaveGap) {
@@ -224,6 +234,7 @@ void World::Impl::ignore_held_thread() noexcept {
 void World::Impl::step_thread() noexcept {
   std::array<int, 3> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) before[i] = held_by(static_cast<int>(i));
+  if (needle) needle->before_thread(state, rod);
   solver = rod.step(state.thread, state.memory, model->step);
   if (!solver.sound || solver.crowded || (!solver.converged && solver.residual > kTrouble)) event("solver-trouble", -1, solver.residual, "N");
   for (std::size_t i = 0; i < commands.size(); ++i) {
@@ -232,6 +243,7 @@ void World::Impl::step_thread() noexcept {
     if (before[i] > 0 && held_by(static_cast<int>(i)) == 0)
       event("drop", static_cast<int>(i), state.instruments[i].grip_force, "N");
   }
+  if (needle) needle->after_thread(state, rod, observation);
 }
 
 void World::Impl::step_pellets() noexcept {
@@ -271,6 +283,7 @@ void World::Impl::part_overloaded_thread() noexcept {
 
 void World::Impl::observe() noexcept {
   fill_observation(*model, state, rod, solver, observation);
+  if (needle) needle->observe(state, observation);
   if (brain) brain->observe(state.brain, state.valid, observation);
   observation.state_hash = hash_state(state);
 }

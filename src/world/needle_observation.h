@@ -1,0 +1,66 @@
+#pragma once
+// What may be seen of a needle, and of the tissue that is stitched with it. Empty in scenes without them.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/pose.h"
+
+namespace filum {
+
+struct NeedleObservation {
+  bool present = false;
+  Pose X_WN;                              // origin at the centre of mass, arc in z = 0, its middle on +x, the point on the side of +y
+  Vec3 point_W = Vec3::Zero();            // [m], the sharp end
+  Vec3 point_direction_W = Vec3::UnitX(); // unit
+  Vec3 swage_W = Vec3::Zero();            // [m]
+  std::array<bool, 3> held{};             // by each tool
+  std::array<double, 3> grip_share{};     // where: 0 at the swage, 1 at the point
+  std::array<double, 3> grip_angle{};     // [rad], between the wire there and the handle of the tool
+  double thread_pull = 0.0;               // [N], of the thread on the swage
+};
+
+/// Constant part of a needle.
+struct NeedleDescription {
+  bool present = false;
+  std::string name;
+  double wire_radius = 0.0, bend_radius = 0.0, angle = 0.0, taper = 0.0;  // [m], [m], [rad], [m]
+};
+
+/// One way of needle and thread through the tissue.
+struct PassObservation {
+  enum class State : std::int32_t { open, needle, thread, pulled_out, torn };  // open: the point is still inside
+  State state = State::open;
+  Vec3 entry_W = Vec3::Zero(), exit_W = Vec3::Zero();        // [m], where they are now
+  Vec3 entry_rest = Vec3::Zero(), exit_rest = Vec3::Zero();  // [m], in the tissue at rest
+  bool out = false;                       // the point has come out again
+  double entry_angle = 0.0, exit_angle = 0.0;  // [rad], of the needle against the surface
+  double bite_entry = 0.0, bite_exit = 0.0;    // [m], distance from the nearest cut edge at rest
+  double depth_share = 0.0;               // greatest depth over the thickness there
+  double arc = -1.0;                      // [m], thread between its short end and the entry; -1 while the needle is in it
+  double tension = 0.0;                   // [N], of the thread in it
+  double peak_force = 0.0;                // [N], largest pull on the tissue so far
+  double hole = 0.0;                      // [m], radius, grown by sawing
+  double torn = 0.0;                      // [m], length of the tear towards the edge
+  int side = 0;                           // of the cut, 0 or 1
+};
+inline constexpr int kMaxPasses = 40;
+
+struct TissueObservation {
+  int n = 0;                              // vertices of the surface; 0: no tissue
+  Points positions;                       // [m], 3 x n, frame W
+  int n_passes = 0;
+  std::array<PassObservation, kMaxPasses> passes;
+  double point_force = 0.0;               // [N], of the tissue on the needle's point
+};
+
+struct TissueDescription {
+  std::string name, kind;                 // "card" | "vessel"
+  double thickness = 0.0;                 // [m]
+  std::vector<std::array<int, 3>> triangles;
+  Points rest;                            // [m], 3 x n
+};
+
+}  // namespace filum

@@ -1,0 +1,132 @@
+#include "world/needle_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "world/needle_model.h"
+
+namespace filum {
+namespace {
+
+constexpr double kSwage = 2e4;         // [N/m], of the joint between needle and thread
+constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
+
+void say(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
+  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
+}
+
+}  // namespace
+
+NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle->shape, static_cast<int>(model.instruments.size())) {
+  options_.dt = model.step.dt;
+  options_.gravity = model.step.gravity;
+  options_.sheet = model.description.floor_height;
+  for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].pads = model.instruments[i].pads;
+}
+
+NeedleState NeedleScene::start() const {
+  NeedleState s;
+  s.X_WN = model_.needle->start;
+  return s;
+}
+
+double NeedleScene::stop_angle(const InstrumentParameters& tool) const noexcept {
+  return 2.0 * body_.shape().wire_radius / tool.jaw_length;
+}
+
+double NeedleScene::squeeze(const InstrumentParameters& tool, double command) const noexcept {
+  return std::clamp(tool.grip_stiffness * (stop_angle(tool) - command) / tool.jaw_length, 0.0, tool.max_grip_force);
+}
+
+void NeedleScene::limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept {
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const InstrumentParameters& tool = model_.instruments[i];
+    if (tool.kind == "scissors") continue;
+    const double reach = std::max(2.0 * body_.shape().wire_radius, 0.5 * tool.jaw_length * s.instruments[i].angle);
+    if (s.needle.grips[i].held == 0 && !body_.between(static_cast<int>(i), reach, s.needle)) continue;
+    InstrumentCommand& c = commands[i];
+    const double command = c.follow ? c.grip_angle : s.instruments[i].grip_command;
+    if (command >= stop_angle(tool)) continue;
+    c.grip_force = !c.follow ? s.instruments[i].grip_force : c.has_grip_force ? c.grip_force : squeeze(tool, command);
+    c.has_grip_force = true;
+    c.grip_angle = stop_angle(tool);
+  }
+}
+
+void NeedleScene::meet_tools(State& s, const std::vector<ObstacleBody>& from, Observation& o) noexcept {
+  for (std::size_t i = 0; i < body_.tools.size(); ++i) {
+    const InstrumentParameters& p = model_.instruments[i];
+    const InstrumentState& in = s.instruments[i];
+    NeedleTool& t = body_.tools[i];
+    NeedleGrip& grip = s.needle.grips[i];
+    const int tool = static_cast<int>(i);
+    t.X_start = from[i].X_start;
+    t.X_end = in.X_WT;
+    t.grip_force = in.grip_force;
+    t.bars = instrument_bars(p, in.angle, 2.0 * body_.shape().wire_radius);
+    const bool closed = in.angle < 1.15 * stop_angle(p) && in.grip_force > 0.0 && p.kind != "scissors";
+    if (grip.held != 0 && !closed) {
+      say(o, "needle-released", tool, grip.arc / body_.shape().length(), "-");
+      grip = {};
+    } else if (grip.held == 0 && closed && s.armed[i] != 0 && body_.take(tool, 2.0 * body_.shape().wire_radius, s.needle)) {
+      s.armed[i] = 0;
+      say(o, "needle-taken", tool, grip.arc / body_.shape().length(), "-");
+    }
+    t.bars_touch = grip.held == 0;
+  }
+}
+
+void NeedleScene::before_thread(const State& s, ImplicitRod& rod) noexcept {
+  body_.tethers.clear();
+  RodTether swage;
+  swage.at_end = true;
+  swage.stiffness = body_.look_ahead(s.needle, options_, 0.0, swage.anchor);
+  rod.tethers.list.clear();
+  rod.tethers.list.push_back(swage);
+}
+
+void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {
+  thread_pull_ = rod.tethers.list.front().force.norm();
+  RodTether swage;
+  swage.stiffness = kSwage * Mat3::Identity();
+  swage.anchor = s.thread.x.col(s.thread.n - 1);
+  body_.tethers.push_back(swage);
+  std::array<bool, kNeedleTools> before{};
+  for (std::size_t i = 0; i < body_.tools.size(); ++i) before[i] = s.needle.grips[i].held != 0;
+  const NeedleSummary summary = body_.step(s.needle, options_);
+  if (!summary.sound || summary.residual > kTroubleForce) say(o, "solver-trouble", -1, summary.residual, "N");
+  for (std::size_t i = 0; i < body_.tools.size(); ++i) {
+    s.force[i] += body_.tools[i].force;
+    s.torque[i] += body_.tools[i].torque;
+    if (before[i] && s.needle.grips[i].held == 0) say(o, "needle-dropped", static_cast<int>(i), s.instruments[i].grip_force, "N");
+  }
+}
+
+void NeedleScene::observe(const State& s, Observation& o) const noexcept {
+  const NeedleShape& shape = body_.shape();
+  NeedleObservation& n = o.needle;
+  n.present = true;
+  n.X_WN = s.needle.X_WN;
+  n.point_W = s.needle.X_WN * shape.point(shape.length());
+  n.point_direction_W = s.needle.X_WN.q * shape.tangent(shape.length());
+  n.swage_W = s.needle.X_WN * shape.point(0.0);
+  n.thread_pull = thread_pull_;
+  for (std::size_t i = 0; i < body_.tools.size(); ++i) {
+    const NeedleGrip& g = s.needle.grips[i];
+    n.held[i] = g.held != 0;
+    n.grip_share[i] = g.arc / shape.length();
+    const Vec3 wire = s.needle.X_WN.q * shape.tangent(g.arc), handle = s.instruments[i].X_WT.q * Vec3::UnitZ();
+    n.grip_angle[i] = n.held[i] ? std::acos(std::min(1.0, std::abs(wire.dot(handle)))) : 0.0;
+  }
+}
+
+void describe_needle(const NeedleShape& shape, NeedleDescription& d) {
+  d.present = true;
+  d.name = shape.name;
+  d.wire_radius = shape.wire_radius;
+  d.bend_radius = shape.bend_radius;
+  d.angle = shape.angle();
+  d.taper = shape.taper;
+}
+
+}  // namespace filum

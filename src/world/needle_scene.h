@@ -1,0 +1,43 @@
+#pragma once
+// The needle of a scene: what jaws do to it, and how it moves with the thread that is swaged to it.
+//
+// A step of thread and needle together: the needle is moved as if it had no thread, which tells how firmly its swage is held there;
+// the thread is stepped with its end held just so (rod_tether.h); then the needle follows the thread's end.
+
+#include "physics/implicit_rod.h"
+#include "physics/needle.h"
+#include "world/model.h"
+#include "world/observation.h"
+#include "world/state.h"
+
+namespace filum {
+
+class NeedleScene {
+ public:
+  explicit NeedleScene(const Model& model);
+
+  NeedleState start() const;
+
+  /// Jaws that close on the wire stop at it and squeeze it. Call before the instruments move.
+  void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
+  /// After the instruments have moved from `from`: tells the needle where they are, takes it, lets it go.
+  void meet_tools(State& s, const std::vector<ObstacleBody>& from, Observation& o) noexcept;
+  void before_thread(const State& s, ImplicitRod& rod) noexcept;
+  /// Adds the needle's pull to the forces on the tools.
+  void after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept;
+  void observe(const State& s, Observation& o) const noexcept;
+  static bool held_by(const State& s, int tool) noexcept { return s.needle.grips[static_cast<std::size_t>(tool)].held != 0; }
+
+ private:
+  double stop_angle(const InstrumentParameters& tool) const noexcept;
+  double squeeze(const InstrumentParameters& tool, double command) const noexcept;
+
+  const Model& model_;
+  NeedleBody body_;
+  NeedleOptions options_;
+  double thread_pull_ = 0.0;
+};
+
+void describe_needle(const NeedleShape& shape, NeedleDescription& d);
+
+}  // namespace filum
