@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "training/knot_classifier.h"
+#include "training/needle_watch.h"
 #include "training/retraction.h"
 #include "training/step_recogniser.h"
 
@@ -87,6 +88,7 @@ struct Result {
   KnotReport knot;
   std::optional<SecurityTest> security;
   std::optional<PressureReport> pressure;  // of brain retraction
+  std::optional<NeedleReport> needle;      // of needle handling and stitches
   Measures measures;
   std::vector<TaskEvent> events;
   std::vector<Curve> series;  // at most kMaxCurvePoints each

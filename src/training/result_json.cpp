@@ -110,6 +110,32 @@ Json pressure_json(const PressureReport& p) {
           {"limits", {{"title", p.limits.title}, {"version", p.limits.version}, {"label", p.limits.label}, {"source", p.limits.source}}}};
 }
 
+Json stitch_json(const Stitch& s, double thickness) {
+  constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+  return {{"time", finite(s.time)},
+          {"bite_m", {finite(s.bite[0]), finite(s.bite[1])}},
+          {"bite_thicknesses", {finite(s.bite[0] / thickness), finite(s.bite[1] / thickness)}},
+          {"entry_angle_deg", finite(kDegrees * s.entry_angle)},
+          {"exit_angle_deg", finite(kDegrees * s.exit_angle)},
+          {"obliquity_deg", finite(kDegrees * s.obliquity)},
+          {"depth_share", finite(s.depth)},
+          {"position_m", finite(s.position)},
+          {"tension_n", finite(s.tension)},
+          {"peak_force_n", finite(s.peak_force)},
+          {"torn_m", finite(s.torn)}};
+}
+
+void add_needle(const NeedleReport& n, Json& json) {
+  json["needle"] = {{"takes", n.takes}, {"drops", n.drops}, {"angle_error_rad", finite(n.angle_error)}, {"held_at_share", finite(n.share)}, {"present_error_m", finite(n.present_error)}};
+  if (!n.has_tissue) return;
+  json["stitches"] = Json::array();
+  for (const Stitch& s : n.stitches) json["stitches"].push_back(stitch_json(s, n.thickness));
+  json["spacings_m"] = finite(spacings_of(n.stitches));
+  json["lapses"] = Json::array();
+  for (const Lapse& l : n.lapses) json["lapses"].push_back({{"name", l.name}, {"stitch", l.stitch}, {"time", finite(l.time)}, {"value", finite(l.value)}, {"unit", l.unit}});
+  json["lapse_rules"] = n.rules;
+}
+
 Json events_json(const std::vector<TaskEvent>& events) {
   Json list = Json::array();
   for (const TaskEvent& e : events) {
@@ -135,6 +161,7 @@ std::string result_json(const Result& r, bool full) {
                {"knot", knot_json(r)},
                {"events", events_json(r.events)}};
   if (r.pressure) json["pressure"] = pressure_json(*r.pressure);
+  if (r.needle) add_needle(*r.needle, json);
   json["series"] = Json::array();
   for (const Curve& c : r.series) {
     json["series"].push_back({{"name", c.name},

@@ -8,6 +8,7 @@
 
 #include "base/units.h"
 #include "training/metrics.h"
+#include "training/needle_watch.h"
 #include "training/retraction.h"
 
 namespace filum {
@@ -84,6 +85,7 @@ double value_of(Measure measure, const Result& r) {
     case Measure::tail_lengths:
       return kNaN;
     default:
+      if (r.needle) return needle_value(measure, *r.needle);
       return r.pressure ? retraction_value(measure, *r.pressure) : kNaN;
   }
   return kNaN;

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "training/needle_task.h"
 #include "training/retraction.h"
 
 namespace filum {
@@ -50,6 +51,18 @@ constexpr std::array kMeasures = {
     MeasureName{Measure::slips, "slips", "-"},
     MeasureName{Measure::edge_cuts, "edge-cuts", "-"},
     MeasureName{Measure::veins_torn, "veins-torn", "-"},
+    MeasureName{Measure::needle_angle, "needle-angle", "rad"},
+    MeasureName{Measure::needle_share, "needle-share", "-"},
+    MeasureName{Measure::needle_takes, "needle-takes", "-"},
+    MeasureName{Measure::needle_drops, "needle-drops", "-"},
+    MeasureName{Measure::needle_present, "needle-present", "m"},
+    MeasureName{Measure::stitches, "stitches", "-"},
+    MeasureName{Measure::bite_inequality, "bite-inequality", "-"},
+    MeasureName{Measure::bite_widest, "bite-widest", "-"},
+    MeasureName{Measure::entry_error, "entry-error", "rad"},
+    MeasureName{Measure::obliquity, "obliquity", "rad"},
+    MeasureName{Measure::tissue_pull, "tissue-pull", "N"},
+    MeasureName{Measure::lapses, "lapses", "-"},
 };
 
 const MeasureName& entry_of(Measure measure) {
@@ -123,6 +136,29 @@ void parse_retraction(const YamlNode& file, const std::string& root, Task& task)
   }
   task.throws = 0;
   task.retraction = std::move(retraction);
+}
+
+/// Goals with a needle, and the steps that show them.
+void parse_needle(const YamlNode& file, const std::string& root, Task& task) {
+  auto needle = std::make_shared<NeedleTask>();
+  needle->has_tissue = file.has("lapses");
+  if (needle->has_tissue) needle->lapses = load_lapse_rules(root + "/" + file.text("lapses"));
+  for (const YamlNode& node : file.items("steps")) {
+    TaskStep step;
+    step.throw_number = 0;
+    step.name = node.text("name");
+    step.hint = node.text("hint");
+    needle->goals.push_back(parse_needle_goal(node));
+    const NeedleGoal& goal = needle->goals.back();
+    if (goal.kind == NeedleGoal::Kind::present) {
+      step.kind = StepKind::hold;  // shown as a target
+      step.at = goal.at;
+      step.within = goal.within;
+    }
+    task.steps.push_back(step);
+  }
+  task.throws = 0;
+  task.needle = std::move(needle);
 }
 
 Measure parse_measure(const YamlNode& node) {
@@ -227,20 +263,22 @@ Task parse_task(const YamlNode& file, const std::string& root) {
   task.suture = file.text("suture");
   task.demonstration_only = file.flag_or("demonstration_only", false);
   task.time_limit = file.quantity("time_limit", "s", Range::between(1.0, 3600.0));
-  const std::string kind = file.has("kind") ? file.choice("kind", {"knot", "laboratory", "retraction"}) : "knot";
+  const std::string kind = file.has("kind") ? file.choice("kind", {"knot", "laboratory", "retraction", "needle"}) : "knot";
   task.laboratory = kind == "laboratory";
   if (task.laboratory) {
     task.lab_tool = file.integer("tool", 0, 2);
     task.throws = 0;
   } else if (kind == "retraction") {
     parse_retraction(file, root, task);
+  } else if (kind == "needle") {
+    parse_needle(file, root, task);
   } else {
     task.accept = parse_accept(file);
     task.throws = file.integer("throws", 1, 4);
   }
   task.required_security = file.quantity_or("required_security", "N", 0.0, Range::not_negative());
   if (file.has("recognition")) task.recognition = parse_recognition(file.map("recognition"));
-  for (const YamlNode& node : kind == "retraction" ? std::vector<YamlNode>() : file.items("steps"))
+  for (const YamlNode& node : kind == "retraction" || kind == "needle" ? std::vector<YamlNode>() : file.items("steps"))
     task.steps.push_back(task.laboratory ? parse_lab_step(node) : parse_step(node, task.throws));
   for (const YamlNode& node : file.items("rubric")) task.rubric.push_back(parse_item(node));
   if (task.steps.empty()) file.refuse("steps", "at least one step");

@@ -12,6 +12,8 @@
 
 namespace filum {
 
+struct NeedleTask;  // training/needle_task.h
+
 enum class StepKind { loop, pass, lay, tighten, cut, hold, follow, place };
 
 struct TaskStep {
@@ -59,6 +61,18 @@ enum class Measure {
   slips,
   edge_cuts,
   veins_torn,
+  needle_angle,
+  needle_share,
+  needle_takes,
+  needle_drops,
+  needle_present,
+  stitches,
+  bite_inequality,
+  bite_widest,
+  entry_error,
+  obliquity,
+  tissue_pull,
+  lapses,
 };
 const char* name_of(Measure measure);
 const char* unit_of(Measure measure);
@@ -95,7 +109,8 @@ struct Task {
   bool laboratory = false;          // no knot: hold, follow, place
   int lab_tool = 0;                 // whose tip is watched
   std::shared_ptr<const RetractionTask> retraction;  // of brain retraction: goals and limits; else none
-  bool has_knot() const { return !laboratory && !retraction; }
+  std::shared_ptr<const NeedleTask> needle;  // of needle handling and stitches, else none
+  bool has_knot() const { return !laboratory && !retraction && !needle; }
   double time_limit = 600.0;        // [s], scored time that is recorded
   std::vector<std::string> accept;  // knot classes that pass
   int throws = 2;                   // throws that the knot has

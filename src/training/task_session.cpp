@@ -27,6 +27,7 @@ TaskSession::TaskSession(Task task, const SceneDescription& scene)
       lab_(task_, scene_),
       log_(scene.n_tools, task_.time_limit) {
   if (task_.retraction) retraction_.emplace(*task_.retraction, scene_.brain.time_compression);
+  if (task_.needle) needle_.emplace(*task_.needle, scene_);
   events_.reserve(kMaxEvents);
   for (auto& kind : last_kept_) kind.fill(-1.0);
 }
@@ -86,7 +87,9 @@ void TaskSession::observe(const Observation& o) noexcept {
       elapsed_ += dt;
       take_sample(o);
     }
-    if (retraction_) {
+    if (needle_) {
+      needle_->observe(o, dt, !paused_, events_);
+    } else if (retraction_) {
       retraction_->observe(o, dt, !paused_, events_);
     } else if (task_.laboratory) {
       lab_.observe(o, dt, !paused_, events_);
@@ -131,7 +134,7 @@ std::vector<TaskWarning> TaskSession::warnings() const {
 
 TaskStatus TaskSession::status() const {
   TaskStatus s;
-  s.step_index = retraction_ ? retraction_->step() : task_.laboratory ? lab_.step() : recogniser_.step();
+  s.step_index = needle_ ? needle_->step() : retraction_ ? retraction_->step() : task_.laboratory ? lab_.step() : recogniser_.step();
   for (const TaskStep& step : task_.steps) s.steps.push_back(step.name);
   s.done = done();
   if (s.done) {
@@ -172,6 +175,7 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
   r.security = security;
   r.events = events_;
   if (retraction_) r.pressure = retraction_->report();
+  if (needle_) r.needle = needle_->report();
   if (observed_ && task_.has_knot()) {
     const ThreadPart part = tied_part(last_);
     const Points nodes = last_.positions.middleCols(part.first, std::max(0, part.nodes()));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "training/lab_watch.h"
+#include "training/needle_watch.h"
 #include "training/retraction.h"
 #include "training/result.h"
 #include "training/series_log.h"
@@ -49,7 +50,7 @@ class TaskSession {
   /// Events since the start, in order, at most kMaxEvents of the world's. Events that may come every step
   /// ("overrun", "slip", "solver-trouble", "thread-overload") are kept once every kEventPause for each tool.
   const std::vector<TaskEvent>& events() const { return events_; }
-  bool done() const { return retraction_ ? retraction_->done() : task_.laboratory ? lab_.done() : recogniser_.done(); }
+  bool done() const { return needle_ ? needle_->done() : retraction_ ? retraction_->done() : task_.laboratory ? lab_.done() : recogniser_.done(); }
   /// Of brain retraction, else none.
   const RetractionWatch* retraction() const { return retraction_ ? &*retraction_ : nullptr; }
   const Task& task() const { return task_; }
@@ -73,6 +74,7 @@ class TaskSession {
   StepRecogniser recogniser_;
   LabWatch lab_;  // of the laboratory's tasks, in place of the recogniser
   std::optional<RetractionWatch> retraction_;  // of brain retraction, in place of both
+  std::optional<NeedleWatch> needle_;          // of needle and stitches, in place of them
   SeriesLog log_;
   std::vector<TaskEvent> events_;
   Observation last_;  // newest

@@ -59,6 +59,7 @@ struct TissueObservation {
 struct TissueDescription {
   std::string name, kind;                 // "card" | "vessel"
   double thickness = 0.0;                 // [m]
+  Vec3 cut_along = Vec3::UnitY();         // unit, direction of the cut at rest
   std::vector<std::array<int, 3>> triangles;
   Points rest;                            // [m], 3 x n
 };

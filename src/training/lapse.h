@@ -1,0 +1,51 @@
+#pragma once
+// Stitches from the ways of the needle through the tissue, and what is wrong with them, by rules from a file
+// (curricula/lapses/*.yaml, format filum-lapses/1). The lapses are those of the Anastomosis Lapse Index that geometry and force can tell;
+// all marks are simulator-derived estimates. A stitch is the pass into one side of a cut together with the next pass out of the
+// other side, or a lone pass. Test: lapse_test.
+
+#include <string>
+#include <vector>
+
+#include "base/yaml_file.h"
+#include "world/observation.h"
+
+namespace filum {
+
+struct LapseRules {
+  std::string title, source;
+  double oblique = 0.35;          // [rad], bite against the normal of the cut
+  double wide_bite = 3.0;         // thicknesses
+  double least_depth = 1.0;       // share of the thickness
+  double spacing_variation = 0.25;  // coefficient of variation
+  double spacing_ratio = 2.0;     // largest over smallest
+  double tear = 20e-6;            // [m], torn length that counts
+};
+
+LapseRules load_lapse_rules(const std::string& path);
+
+struct Stitch {
+  int first = 0, second = -1;     // passes
+  double time = 0.0;              // [s], of the last puncture
+  double bite[2] = {0, 0};        // [m], distance from the cut on either side; the second NaN for half a stitch
+  double entry_angle = 0.0, exit_angle = 0.0;  // [rad], of the needle against the surface
+  double obliquity = 0.0;         // [rad], of the line from entry to exit against the normal of the cut, seen from above
+  double depth = 0.0;             // share of the thickness, the least of both sides
+  double position = 0.0;          // [m], along the cut
+  double tension = 0.0, peak_force = 0.0, torn = 0.0;  // [N], [N], [m]
+};
+
+struct Lapse {
+  const char* name = "";          // as in the command line's contract: "oblique", "wide-bite", ...
+  int stitch = -1;                // index from 0, -1 the whole line
+  double time = 0.0;              // [s]
+  double value = 0.0;
+  const char* unit = "-";
+};
+
+/// `along_rest`: unit, direction of the cut in the tissue at rest.
+std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<double>& pass_time, const Vec3& along_rest);
+std::vector<double> spacings_of(const std::vector<Stitch>& stitches);  // [m], between neighbours along the cut
+std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, double thickness);
+
+}  // namespace filum

@@ -1,0 +1,33 @@
+#pragma once
+// What a task with a needle asks for (training/needle_watch.h), and by which rules lapses are found (training/lapse.h).
+
+#include <string>
+#include <vector>
+
+#include "base/yaml_file.h"
+#include "training/lapse.h"
+
+namespace filum {
+
+struct NeedleGoal {
+  enum class Kind { pick, load, present, pass, draw } kind = Kind::pick;
+  int tool = 0;
+  double low = 0.0, high = 1.0;   // load: where on the needle, share of its length from the swage
+  double angle = 0.0;             // [rad], load: largest deviation from a right angle between wire and handle
+  Vec3 at = Vec3::Zero();         // [m], present, frame W
+  double within = 0.0;            // [m], present
+  double seconds = 0.0;           // [s], load and present: kept so long
+  int passes = 0;                 // pass, draw: ways through the tissue
+  double tail = 0.0;              // [m], draw: thread left before the first entry
+};
+
+struct NeedleTask {
+  std::vector<NeedleGoal> goals;
+  LapseRules lapses;
+  bool has_tissue = false;
+};
+
+/// A step of a task file. Throws InputError.
+NeedleGoal parse_needle_goal(const YamlNode& node);
+
+}  // namespace filum

@@ -1,0 +1,162 @@
+#include "training/needle_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+namespace filum {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kRightAngle = 0.5 * std::numbers::pi;
+
+int passes_done(const TissueObservation& t) {
+  return static_cast<int>(std::count_if(t.passes.begin(), t.passes.begin() + t.n_passes, [](const PassObservation& p) {
+    return p.out && p.state != PassObservation::State::needle && p.state != PassObservation::State::open;
+  }));
+}
+
+}  // namespace
+
+NeedleGoal parse_needle_goal(const YamlNode& node) {
+  NeedleGoal g;
+  const std::string kind = node.choice("kind", {"pick", "load", "present", "pass", "draw"});
+  g.tool = node.integer_or("tool", 0, 0, 2);
+  if (kind == "load") {
+    g.kind = NeedleGoal::Kind::load;
+    g.low = node.number("from", Range::between(0.0, 1.0));
+    g.high = node.number("to", Range::between(g.low, 1.0));
+    g.angle = node.quantity("square_within", "deg", Range::positive());
+    g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
+  } else if (kind == "present") {
+    g.kind = NeedleGoal::Kind::present;
+    g.at = node.vec3("at", "mm");
+    g.within = node.quantity("within", "mm", Range::positive());
+    g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
+  } else if (kind == "pass" || kind == "draw") {
+    g.kind = kind == "pass" ? NeedleGoal::Kind::pass : NeedleGoal::Kind::draw;
+    g.passes = node.integer("passes", 1, kMaxPasses);
+    if (kind == "draw") g.tail = node.quantity("tail", "mm", Range::positive());
+  }
+  return g;
+}
+
+double needle_value(Measure measure, const NeedleReport& r) {
+  const auto worst = [&](auto value) {
+    double most = kNaN;
+    for (const Stitch& s : r.stitches) most = std::isnan(most) ? value(s) : std::max(most, value(s));
+    return most;
+  };
+  switch (measure) {
+    case Measure::needle_angle:
+      return r.angle_error;
+    case Measure::needle_share:
+      return r.share;
+    case Measure::needle_takes:
+      return r.takes;
+    case Measure::needle_drops:
+      return r.drops;
+    case Measure::needle_present:
+      return r.present_error;
+    case Measure::stitches:
+      return r.has_tissue ? static_cast<double>(r.stitches.size()) : kNaN;
+    case Measure::bite_inequality:
+      return worst([](const Stitch& s) { return std::isnan(s.bite[1]) ? 1.0 : std::abs(s.bite[0] - s.bite[1]) / std::max(s.bite[0], s.bite[1]); });
+    case Measure::bite_widest:
+      return worst([&](const Stitch& s) { return std::fmax(s.bite[0], s.bite[1]) / r.thickness; });
+    case Measure::entry_error:
+      return worst([](const Stitch& s) { return kRightAngle - s.entry_angle; });
+    case Measure::obliquity:
+      return worst([](const Stitch& s) { return s.obliquity; });
+    case Measure::tissue_pull:
+      return r.has_tissue ? r.peak_force : kNaN;
+    case Measure::lapses:
+      return r.has_tissue ? static_cast<double>(r.lapses.size()) : kNaN;
+    default:
+      return kNaN;
+  }
+}
+
+NeedleWatch::NeedleWatch(const NeedleTask& task, const SceneDescription& scene) : task_(task), scene_(scene) {
+  pass_time_.reserve(kMaxPasses);
+}
+
+bool NeedleWatch::held_only_by(const Observation& o, int tool) const {
+  for (int i = 0; i < o.n_tools; ++i)
+    if (o.needle.held[static_cast<std::size_t>(i)] != (i == tool)) return false;
+  return true;
+}
+
+bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {
+  const auto tool = static_cast<std::size_t>(g.tool);
+  bool now = false;
+  switch (g.kind) {
+    case NeedleGoal::Kind::pick:
+      return o.needle.held[tool] && o.needle.X_WN.p.z() > scene_.floor_height + 0.5e-3;
+    case NeedleGoal::Kind::load: {
+      const double error = kRightAngle - o.needle.grip_angle[tool], share = o.needle.grip_share[tool];
+      now = held_only_by(o, g.tool) && error <= g.angle && share >= g.low && share <= g.high;
+      if (!held_only_by(o, g.tool)) break;
+      angle_sum_ += error * dt;
+      share_sum_ += share * dt;
+      angle_time_ += dt;
+      break;
+    }
+    case NeedleGoal::Kind::present: {
+      const double error = (o.needle.point_W - g.at).norm();
+      now = error <= g.within;
+      if (!now) break;
+      square_ += error * error * dt;
+      present_time_ += dt;
+      break;
+    }
+    case NeedleGoal::Kind::pass:
+      return passes_done(o.tissue) >= g.passes;
+    case NeedleGoal::Kind::draw: {
+      if (passes_done(o.tissue) < g.passes) return false;
+      const double tail = o.tissue.passes[0].arc;
+      return tail >= 0.0 && tail <= g.tail;
+    }
+  }
+  kept_ = now ? kept_ + dt : 0.0;
+  return now && kept_ >= g.seconds;
+}
+
+void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events) {
+  for (int k = 0; k < o.n_events; ++k) {
+    const std::string_view name = o.events[static_cast<std::size_t>(k)].name;
+    report_.takes += name == "needle-taken" ? 1 : 0;
+    report_.drops += name == "needle-dropped" ? 1 : 0;
+  }
+  tissue_.n_passes = o.tissue.n_passes;
+  for (int k = 0; k < o.tissue.n_passes; ++k) {
+    const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(k)];
+    tissue_.passes[static_cast<std::size_t>(k)] = p;
+    report_.peak_force = std::max(report_.peak_force, p.peak_force);
+    if (p.out && static_cast<int>(pass_time_.size()) == k) pass_time_.push_back(o.time);
+  }
+  if (done() || !scored) return;
+  if (!met(task_.goals[static_cast<std::size_t>(step_)], o, dt)) return;
+  events.push_back({o.time, "goal-done", task_.goals[static_cast<std::size_t>(step_)].tool, step_ + 1.0, "-", {}});
+  ++step_;
+  kept_ = 0.0;
+}
+
+NeedleReport NeedleWatch::report() const {
+  NeedleReport r = report_;
+  if (angle_time_ > 0.0) {
+    r.angle_error = angle_sum_ / angle_time_;
+    r.share = share_sum_ / angle_time_;
+  }
+  if (present_time_ > 0.0) r.present_error = std::sqrt(square_ / present_time_);
+  r.has_tissue = task_.has_tissue;
+  if (!r.has_tissue) return r;
+  r.thickness = scene_.tissue.thickness;
+  r.stitches = stitches_of(tissue_, pass_time_, scene_.tissue.cut_along);
+  r.lapses = lapses_of(task_.lapses, r.stitches, r.thickness);
+  r.rules = task_.lapses.title;
+  return r;
+}
+
+}  // namespace filum

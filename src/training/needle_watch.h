@@ -1,0 +1,60 @@
+#pragma once
+// Tasks with a needle: goals in turn, how the needle was held, which stitches were made and what was wrong with them.
+//   pick     the tool holds the needle and nothing else touches the sheet
+//   load     that tool alone holds it, at the place and angle asked for, for `seconds`
+//   present  the needle's point stays within reach of a place for `seconds`
+//   pass     the needle has gone right through the tissue so many times
+//   draw     the thread follows until no more than `tail` is left before the first entry
+// Events: goal-done. Test: needle_watch_test.
+
+#include <limits>
+#include <vector>
+
+#include "training/needle_task.h"
+#include "training/step_recogniser.h"
+#include "training/task.h"
+#include "world/observation.h"
+
+namespace filum {
+
+/// At the end of a run. SI units; NaN where there was nothing to measure.
+struct NeedleReport {
+  int takes = 0, drops = 0;
+  double angle_error = std::numeric_limits<double>::quiet_NaN();  // [rad], mean deviation from a right angle where load was asked for
+  double share = std::numeric_limits<double>::quiet_NaN();        // where it was held then
+  double present_error = std::numeric_limits<double>::quiet_NaN();  // [m], root mean square while presenting
+  bool has_tissue = false;
+  double thickness = 0.0;                // [m]
+  double peak_force = 0.0;               // [N], largest pull on the tissue
+  std::vector<Stitch> stitches;
+  std::vector<Lapse> lapses;
+  std::string rules;                     // title of the rules
+};
+
+/// What a rubric line looks at; NaN for measures of other tasks.
+double needle_value(Measure measure, const NeedleReport& report);
+
+class NeedleWatch {
+ public:
+  NeedleWatch(const NeedleTask& task, const SceneDescription& scene);
+
+  void observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events);
+  int step() const { return step_; }
+  bool done() const { return step_ == static_cast<int>(task_.goals.size()); }
+  NeedleReport report() const;
+
+ private:
+  bool met(const NeedleGoal& g, const Observation& o, double dt);
+  bool held_only_by(const Observation& o, int tool) const;
+
+  NeedleTask task_;
+  SceneDescription scene_;
+  NeedleReport report_;
+  TissueObservation tissue_;             // newest passes
+  std::vector<double> pass_time_;        // [s], when each came out
+  int step_ = 0;
+  double kept_ = 0.0;                    // [s]
+  double angle_sum_ = 0.0, share_sum_ = 0.0, angle_time_ = 0.0, square_ = 0.0, present_time_ = 0.0;
+};
+
+}  // namespace filum
