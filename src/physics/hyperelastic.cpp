@@ -1,0 +1,73 @@
+#include "physics/hyperelastic.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace filum {
+
+WallLaw WallLaw::hooke(double young, double poisson) {
+  WallLaw law;
+  law.kind = Kind::linear;
+  law.mu = young / (2.0 * (1.0 + poisson));
+  law.lambda = 2.0 * law.mu * poisson / (1.0 - 2.0 * poisson);
+  return law;
+}
+
+LawConstants::LawConstants(const WallLaw& law)
+    : kind(law.kind), mu(law.mu), lambda(law.lambda_point()), k1(law.k1), k2(law.k2), strain_end(std::sqrt(kLargestExponent / law.k2)) {
+  slope_end = k1 * (1.0 + 2.0 * kLargestExponent) * std::exp(kLargestExponent);
+}
+
+SixSix volume_ratio_tangent(const LawGeometry<double>& g, const Six& C) noexcept {
+  Six dJ;
+  const double J = volume_ratio(g, C.data(), dJ.data());
+  const double scale = 0.5 * g.inverse_root * g.inverse_root / J;
+  SixSix D = SixSix::Zero();  // of det C
+  D(0, 1) = C[2];
+  D(0, 2) = C[1];
+  D(1, 2) = C[0];
+  D(0, 4) = -2.0 * C[4];
+  D(1, 5) = -2.0 * C[5];
+  D(2, 3) = -2.0 * C[3];
+  D(3, 3) = -2.0 * C[2];
+  D(4, 4) = -2.0 * C[0];
+  D(5, 5) = -2.0 * C[1];
+  D(3, 4) = 2.0 * C[5];
+  D(3, 5) = 2.0 * C[4];
+  D(4, 5) = 2.0 * C[3];
+  D.triangularView<Eigen::StrictlyLower>() = D.transpose();
+  return scale * D - dJ * dJ.transpose() / J;
+}
+
+SixSix law_tangent(const LawConstants& c, const LawGeometry<double>& g, const Six& C, bool taut) noexcept {
+  SixSix D = SixSix::Zero();
+  if (c.kind == WallLaw::Kind::linear) {  // the derivative is linear in C: its columns are those of the unit vectors
+    Six at_zero, zero = Six::Zero();
+    green_energy(c, g, zero.data(), at_zero.data());
+    for (int n = 0; n < 6; ++n) {
+      const Six unit = Six::Unit(n);
+      Six T;
+      green_energy(c, g, unit.data(), T.data());
+      D.col(n) = T - at_zero;
+    }
+    return D;
+  }
+  Six dJ;
+  const double J = volume_ratio(g, C.data(), dJ.data());
+  D = (c.lambda + c.mu) * dJ * dJ.transpose() + ((c.lambda + c.mu) * (J - 1.0) - c.mu) * volume_ratio_tangent(g, C);
+  if (c.kind != WallLaw::Kind::fibres) return D;
+  for (const auto& a : g.fibre) {
+    const double stretched = a[0] * C[0] + a[1] * C[1] + a[2] * C[3] - 1.0;
+    if (stretched <= 0.0 && !taut) continue;
+    const double e = std::max(stretched, 0.0);
+    const double bend = e < c.strain_end ? c.k1 * (1.0 + 2.0 * c.k2 * e * e) * std::exp(c.k2 * e * e) : c.slope_end;
+    Six s = Six::Zero();
+    s[0] = a[0];
+    s[1] = a[1];
+    s[3] = a[2];
+    D += bend * s * s.transpose();
+  }
+  return D;
+}
+
+}  // namespace filum

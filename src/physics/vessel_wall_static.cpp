@@ -1,0 +1,103 @@
+#include "physics/vessel_wall_static.h"
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+
+#include "physics/vessel_wall_pressure.h"
+
+namespace filum {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// Unbalanced force; false if an element is inside out.
+bool unbalanced(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, const Points& x, Points& r) {
+  const std::vector<double> sound(static_cast<std::size_t>(mesh.n_elements()), 1.0);
+  r = load.force.cols() > 0 ? load.force : Points(Points::Zero(3, x.cols()));
+  const double energy = elements.add_forces(x, sound, r);
+  if (!load.pressure.empty()) add_pressure_forces(mesh, load.pressure, x, r);
+  return std::isfinite(energy);
+}
+
+void add_block(const std::vector<char>& fixed, int i, int j, const Mat3& k, std::vector<Eigen::Triplet<double>>& list) {
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c)
+      if (!fixed[static_cast<std::size_t>(3 * i + r)] && !fixed[static_cast<std::size_t>(3 * j + c)]) list.emplace_back(3 * i + r, 3 * j + c, k(r, c));
+}
+
+Sparse assemble(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, const Points& x) {
+  std::vector<Eigen::Triplet<double>> list;
+  list.reserve(static_cast<std::size_t>(mesh.n_elements()) * 576);
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    const auto K = elements.stiffness(e, x);
+    const auto& nodes = mesh.elements[static_cast<std::size_t>(e)];
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b)
+        add_block(load.fixed, nodes[static_cast<std::size_t>(a)], nodes[static_cast<std::size_t>(b)], K.block<3, 3>(3 * a, 3 * b), list);
+  }
+  for (const WallFace& f : mesh.faces) {
+    if (load.pressure.empty() || f.surface != WallSurface::inner) continue;
+    const double p = load.pressure[static_cast<std::size_t>(mesh.part[static_cast<std::size_t>(f.element)])];
+    const Eigen::Matrix<double, 12, 12> K = pressure_stiffness(mesh, f, p, x);
+    const Eigen::Matrix<double, 12, 12> even = 0.5 * (K + K.transpose());
+    const auto& nodes = mesh.elements[static_cast<std::size_t>(f.element)];
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b)
+        add_block(load.fixed, nodes[static_cast<std::size_t>(f.corner[static_cast<std::size_t>(a)])],
+                  nodes[static_cast<std::size_t>(f.corner[static_cast<std::size_t>(b)])], even.block<3, 3>(3 * a, 3 * b), list);
+  }
+  for (std::size_t i = 0; i < load.fixed.size(); ++i)
+    if (load.fixed[i]) list.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
+  Sparse A(static_cast<int>(load.fixed.size()), static_cast<int>(load.fixed.size()));
+  A.setFromTriplets(list.begin(), list.end());
+  return A;
+}
+
+double largest_free(const std::vector<char>& fixed, const Points& r) {
+  double most = 0.0;
+  for (int i = 0; i < r.size(); ++i)
+    if (!fixed[static_cast<std::size_t>(i)]) most = std::max(most, std::abs(r.data()[i]));
+  return most;
+}
+
+}  // namespace
+
+Points reactions(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, const Points& x) {
+  Points r;
+  unbalanced(mesh, elements, load, x, r);
+  return -r;
+}
+
+StaticSummary solve_static(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, Points& x, double tolerance,
+                           int max_iterations) {
+  StaticSummary s;
+  Points r, trial, r_trial;
+  if (!unbalanced(mesh, elements, load, x, r)) return s;
+  s.residual = largest_free(load.fixed, r);
+  Eigen::SimplicialLDLT<Sparse> solver;
+  for (; s.iterations < max_iterations && s.residual > tolerance; ++s.iterations) {
+    const Sparse A = assemble(mesh, elements, load, x);
+    if (s.iterations == 0) solver.analyzePattern(A);
+    solver.factorize(A);
+    if (solver.info() != Eigen::Success) return s;
+    Eigen::VectorXd b = r.reshaped();
+    for (int i = 0; i < b.size(); ++i)
+      if (load.fixed[static_cast<std::size_t>(i)]) b[i] = 0.0;
+    const Eigen::VectorXd d = solver.solve(b);
+    double step = 1.0, best = -1.0;
+    for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
+      trial = x + step * d.reshaped(3, x.cols());
+      if (!unbalanced(mesh, elements, load, trial, r_trial)) continue;
+      best = largest_free(load.fixed, r_trial);
+      if (best < 2.0 * s.residual || best < tolerance) break;
+    }
+    if (best < 0.0) return s;
+    x = trial;
+    r = r_trial;
+    s.residual = best;
+  }
+  s.converged = s.residual <= tolerance;
+  return s;
+}
+
+}  // namespace filum

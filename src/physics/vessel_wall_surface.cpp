@@ -1,0 +1,148 @@
+// Questions about places on and in the wall.
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "collision/point_triangle.h"
+#include "physics/vessel_wall.h"
+
+namespace filum {
+namespace {
+
+Vec3 corner_local(int a) noexcept { return {a & 1 ? 1.0 : -1.0, a & 2 ? 1.0 : -1.0, a & 4 ? 1.0 : -1.0}; }
+
+/// Fraction of the segment where it meets the triangle and the weights of the corners; false if it does not.
+bool meets(const Vec3& a, const Vec3& d, const Vec3& p, const Vec3& q, const Vec3& r, double& fraction, Vec3& weights) noexcept {
+  const Vec3 e1 = q - p, e2 = r - p, h = d.cross(e2);
+  const double det = e1.dot(h);
+  if (std::abs(det) < 1e-12 * e1.norm() * e2.norm() * d.norm()) return false;
+  const Vec3 s = a - p, k = s.cross(e1);
+  const double u = s.dot(h) / det, v = d.dot(k) / det;
+  constexpr double kRim = 1e-9;
+  if (u < -kRim || v < -kRim || u + v > 1.0 + kRim) return false;
+  fraction = e2.dot(k) / det;
+  weights = {1.0 - u - v, u, v};
+  return fraction >= 0.0 && fraction <= 1.0;
+}
+
+}  // namespace
+
+Vec3 VesselWall::position(const WallState& state, const WallPoint& at) const noexcept {
+  const auto& nodes = mesh_.elements[static_cast<std::size_t>(at.element)];
+  const auto w = corner_weights(at.local);
+  Vec3 p = Vec3::Zero();
+  for (int a = 0; a < 8; ++a) p += w[a] * state.x.col(nodes[static_cast<std::size_t>(a)]);
+  return p;
+}
+
+Vec3 VesselWall::velocity(const WallState& state, const WallPoint& at) const noexcept {
+  const auto& nodes = mesh_.elements[static_cast<std::size_t>(at.element)];
+  const auto w = corner_weights(at.local);
+  Vec3 p = Vec3::Zero();
+  for (int a = 0; a < 8; ++a) p += w[a] * state.v.col(nodes[static_cast<std::size_t>(a)]);
+  return p;
+}
+
+Mat3 VesselWall::directions(const WallState& state, const WallPoint& at) const noexcept {
+  const auto& nodes = mesh_.elements[static_cast<std::size_t>(at.element)];
+  Mat3 g = Mat3::Zero();
+  for (int a = 0; a < 8; ++a) {
+    const Vec3 c = corner_local(a), w = 0.5 * (Vec3::Ones() + c.cwiseProduct(at.local));
+    const Vec3 d = 0.5 * Vec3(c.x() * w.y() * w.z(), c.y() * w.x() * w.z(), c.z() * w.x() * w.y());
+    g += state.x.col(nodes[static_cast<std::size_t>(a)]) * d.transpose();
+  }
+  return g;
+}
+
+double VesselWall::depth_at(const WallPoint& at) const noexcept {
+  const auto& span = mesh_.span[static_cast<std::size_t>(at.element)];
+  return 1.0 - (span[0] + 0.5 * (at.local.z() + 1.0) * (span[1] - span[0]));
+}
+
+void VesselWall::refit(const WallState& state) noexcept { tree_.refit(state.x); }
+
+namespace {
+
+/// The crossing or nearest point at `weights` of a triangle.
+void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, const Points& x, int triangle, const Vec3& weights, WallCrossing& c) noexcept {
+  const WallFace& face = mesh.faces[static_cast<std::size_t>(triangle / 2)];
+  const std::array<std::size_t, 3> corner = triangle % 2 ? std::array<std::size_t, 3>{0, 2, 3} : std::array<std::size_t, 3>{0, 1, 2};
+  c.found = true;
+  c.triangle = triangle;
+  c.surface = face.surface;
+  c.point.element = face.element;
+  c.point.local.setZero();
+  for (int k = 0; k < 3; ++k) c.point.local += weights[k] * corner_local(face.corner[corner[static_cast<std::size_t>(k)]]);
+  const Triangle& t = triangles[static_cast<std::size_t>(triangle)];
+  c.normal = Vec3(x.col(t[1]) - x.col(t[0])).cross(Vec3(x.col(t[2]) - x.col(t[0]))).normalized();
+}
+
+}  // namespace
+
+WallCrossing VesselWall::crossing(const WallState& state, const Vec3& a, const Vec3& b, double from) const noexcept {
+  WallCrossing best;
+  found_.clear();
+  tree_.overlaps({a.cwiseMin(b), a.cwiseMax(b)}, found_);
+  int triangle = -1;
+  Vec3 weights = Vec3::Zero();
+  for (const int k : found_) {
+    const Triangle& t = triangles()[static_cast<std::size_t>(k)];
+    if (state.soundness[static_cast<std::size_t>(mesh_.faces[static_cast<std::size_t>(k / 2)].element)] == 0.0) continue;
+    double fraction = 0.0;
+    Vec3 w;
+    if (!meets(a, b - a, state.x.col(t[0]), state.x.col(t[1]), state.x.col(t[2]), fraction, w)) continue;
+    if (fraction < from || (best.found && fraction >= best.fraction)) continue;
+    best.found = true;
+    best.fraction = fraction;
+    triangle = k;
+    weights = w;
+  }
+  if (!best.found) return best;
+  describe(mesh_, triangles(), state.x, triangle, weights, best);
+  best.layer = layer_at(best.point);
+  return best;
+}
+
+WallCrossing VesselWall::nearest(const WallState& state, const Vec3& q, double reach) const noexcept {
+  WallCrossing best;
+  found_.clear();
+  tree_.overlaps({q - Vec3::Constant(reach), q + Vec3::Constant(reach)}, found_);
+  int triangle = -1;
+  double least = reach;
+  TrianglePoint place;
+  double facing = 0.0;  // of ties at shared sides the triangle that q faces most tells inside from outside
+  for (const int k : found_) {
+    const Triangle& t = triangles()[static_cast<std::size_t>(k)];
+    if (state.soundness[static_cast<std::size_t>(mesh_.faces[static_cast<std::size_t>(k / 2)].element)] == 0.0) continue;
+    const Vec3 p0 = state.x.col(t[0]), p1 = state.x.col(t[1]), p2 = state.x.col(t[2]);
+    const TrianglePoint c = closest_on_triangle(q, p0, p1, p2);
+    const double distance = (q - c.point).norm();
+    const double face = std::abs((q - c.point).dot((p1 - p0).cross(p2 - p0).normalized()));
+    if (distance > least + 1e-12 || (triangle >= 0 && distance > least - 1e-12 && face <= facing)) continue;
+    least = std::min(least, distance);
+    facing = face;
+    triangle = k;
+    place = c;
+  }
+  if (triangle < 0) return best;
+  describe(mesh_, triangles(), state.x, triangle, place.weights, best);
+  best.fraction = (q - place.point).dot(best.normal) >= 0.0 ? least : -least;
+  best.layer = layer_at(best.point);
+  return best;
+}
+
+WallPoint VesselWall::locate(const WallState& state, const Vec3& q, const WallPoint& guess) const noexcept {
+  WallPoint p = guess;
+  for (int k = 0; k < 20; ++k) {
+    const Vec3 miss = q - position(state, p);
+    const Vec3 d = directions(state, p).partialPivLu().solve(miss);
+    if (!d.allFinite()) break;
+    p.local += d.cwiseMax(-1.0).cwiseMin(1.0);
+    p.local = p.local.cwiseMax(-3.0).cwiseMin(3.0);
+    if (d.cwiseAbs().maxCoeff() < 1e-10) break;
+  }
+  return p;
+}
+
+}  // namespace filum
