@@ -54,7 +54,9 @@ SixSix law_tangent(const LawConstants& c, const LawGeometry<double>& g, const Si
   }
   Six dJ;
   const double J = volume_ratio(g, C.data(), dJ.data());
-  D = (c.lambda + c.mu) * dJ * dJ.transpose() + ((c.lambda + c.mu) * (J - 1.0) - c.mu) * volume_ratio_tangent(g, C);
+  const double i2 = 1.0 / (J * J), volume = 0.25 * (c.lambda + c.mu);
+  D = volume * ((1.0 + i2) * (1.0 + i2) - 2.0 * (1.0 - i2) * i2) * dJ * dJ.transpose();
+  D += (volume * (J - 1.0 / J) * (1.0 + i2) - c.mu) * volume_ratio_tangent(g, C);
   if (c.kind != WallLaw::Kind::fibres) return D;
   for (const auto& a : g.fibre) {
     const double stretched = a[0] * C[0] + a[1] * C[1] + a[2] * C[3] - 1.0;

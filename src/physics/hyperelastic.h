@@ -5,12 +5,12 @@
 // with respect to these six numbers, so those of 12, 23, 13 hold both halves of the symmetric tensor.
 //
 //   linear       Psi = mu E:E + (l/2) (tr E)^2,  E = (C - I)/2           (Saint Venant-Kirchhoff; Hooke's law at small strain)
-//   neo-Hookean  Psi = (mu/2)(I1 - 3) - mu (J - 1) + ((l + mu)/2)(J - 1)^2
+//   neo-Hookean  Psi = (mu/2)(I1 - 3) - mu (J - 1) + ((l + mu)/8)(J - 1/J)^2
 //   fibres       neo-Hookean + sum over two families of (k1/2 k2) [exp(k2 (I_i - 1)^2) - 1] where I_i > 1, I_i = a_i . C a_i
 //                (Holzapfel, Gasser & Ogden, J. Elasticity 61:1, 2000, eq. 62-65; invariants not split off their volume part:
 //                Sansour, Eur. J. Mech. A 27:28, 2008). mu is their c.
-// mu (J - 1) in place of mu ln J keeps the energy finite (Smith, de Goes & Kim, ACM TOG 37:12, 2018, eq. 13) with the same stress at
-// J = 1. `l` here is the point's share of Lame's constant (see vessel_wall_element.h); what resists the change of an
+// The terms in J have at J = 1 the stress and the stiffness of mu ln J and (l/2)(J - 1)^2; the last grows without bound as a point is
+// squashed. `l` here is the point's share of Lame's constant (see vessel_wall_element.h); what resists the change of an
 // element's whole volume is added there. Exponents above kLargestExponent are continued by a straight line of stress.
 // Neglects: fibre dispersion, viscoelasticity, active tone, damage. Test: hyperelastic_test.
 
@@ -58,6 +58,7 @@ struct LawConstants {
   double slope_end;          // d2Psi/dI2 [Pa] there and beyond
 };
 inline constexpr double kLargestExponent = 12.0;
+inline constexpr double kTiny = 1e-12;  // least J^2: so that no number of a squashed element is infinite
 
 template <class S>
 S first_invariant(const LawGeometry<S>& g, const S* C) noexcept {
@@ -75,8 +76,7 @@ S volume_ratio(const LawGeometry<S>& g, const S* C, S* dJ) noexcept {
   dJ[4] = 2.0 * (C[3] * C[5] - C[0] * C[4]);
   dJ[5] = 2.0 * (C[3] * C[4] - C[1] * C[5]);
   const S det = C[0] * dJ[0] + 0.5 * (C[3] * dJ[3] + C[5] * dJ[5]);
-  const S tiny = value_of<S>(1e-30);  // of a squashed element, so that no number is infinite
-  const S root = root_of(positive_part(det * g.inverse_root * g.inverse_root) + tiny);
+  const S root = root_of(positive_part(S(det * g.inverse_root * g.inverse_root)) + kTiny);
   const S scale = 0.5 * g.inverse_root * g.inverse_root / root;
   for (int m = 0; m < 6; ++m) dJ[m] = dJ[m] * scale;
   return root;
@@ -86,7 +86,7 @@ S volume_ratio(const LawGeometry<S>& g, const S* C, S* dJ) noexcept {
 template <class S>
 S fibre_energy(const LawConstants& c, const S& e_all, S& slope) noexcept {
   const S e = positive_part(e_all);
-  const S inside = least_of(e, value_of<S>(c.strain_end));
+  const S inside = least_of(e, S(c.strain_end));
   const S beyond = e - inside;
   const S power = exp_of(c.k2 * inside * inside);
   slope = c.k1 * inside * power + c.slope_end * beyond;
@@ -97,7 +97,7 @@ S fibre_energy(const LawConstants& c, const S& e_all, S& slope) noexcept {
 template <class S>
 S green_energy(const LawConstants& c, const LawGeometry<S>& g, const S* C, S* T) noexcept {
   constexpr int at[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-  S mixed[3][3], trace2 = value_of<S>(0.0);  // G^-1 C
+  S mixed[3][3], trace2 = S(0.0);  // G^-1 C
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       mixed[i][j] = g.metric[at[i][0]] * C[at[0][j]] + g.metric[at[i][1]] * C[at[1][j]] + g.metric[at[i][2]] * C[at[2][j]];
@@ -118,9 +118,10 @@ S green_energy(const LawConstants& c, const LawGeometry<S>& g, const S* C, S* T)
 template <class S>
 S law_energy(const LawConstants& c, const LawGeometry<S>& g, const S* C, const S& J, const S* dJ, S* T) noexcept {
   if (c.kind == WallLaw::Kind::linear) return green_energy(c, g, C, T);
-  const S pressure = (c.lambda + c.mu) * (J - 1.0) - c.mu;
+  const S inverse = 1.0 / J, spread = J - inverse, stiff = 0.25 * (c.lambda + c.mu) * spread;
+  const S pressure = stiff * (1.0 + inverse * inverse) - c.mu;
   for (int m = 0; m < 6; ++m) T[m] = (m < 3 ? 0.5 : 1.0) * c.mu * g.metric[m] + pressure * dJ[m];
-  S energy = 0.5 * c.mu * (first_invariant(g, C) - 3.0) + (J - 1.0) * (0.5 * (c.lambda + c.mu) * (J - 1.0) - c.mu);
+  S energy = 0.5 * c.mu * (first_invariant(g, C) - 3.0) + 0.5 * stiff * spread - c.mu * (J - 1.0);
   if (c.kind != WallLaw::Kind::fibres) return energy;
   for (const auto& a : g.fibre) {
     S slope;

@@ -61,7 +61,7 @@ std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallEl
 }  // namespace
 
 VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const WallOptions& options)
-    : mesh_(std::move(mesh)), options_(options), elements_(mesh_, layers), neighbours_(find_neighbours(mesh_)), tree_(face_triangles(mesh_), mesh_.nodes) {
+    : mesh_(std::move(mesh)), options_(options), elements_(mesh_, layers, options.single_precision), neighbours_(find_neighbours(mesh_)), tree_(face_triangles(mesh_), mesh_.nodes) {
   const int n = mesh_.n_nodes();
   inertia_ = Vector::Zero(n);
   const double per_volume = options_.density * (1.0 + options_.damping * options_.dt) / (options_.dt * options_.dt);
@@ -73,6 +73,8 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   factor_ = SlabFactor(mesh_.slab, first_matrix(mesh_, elements_, inertia_, held_));
   clamp_.resize(mesh_.edge_ring.size());
   pressure_.assign(clamp_.size(), 0.0);
+  longest_move_ = 0.0;
+  for (const WallLayer& l : layers) longest_move_ += l.thickness;
   loads_.resize(kMostLoads);
   for (Points* p : {&x_, &target_, &residual_, &trial_x_, &trial_residual_}) p->setZero(3, n);
   turn_.resize(static_cast<std::size_t>(n));
@@ -189,8 +191,8 @@ void VesselWall::direction() noexcept {
 
 /// Goes along the direction, less far if that turns elements inside out or the energy does not fall.
 bool VesselWall::advance(const WallState& state) noexcept {
-  const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = 1e-12 * std::abs(energy_);
-  double step = 1.0;
+  const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = (options_.single_precision ? 3e-8 : 1e-13) * std::abs(energy_);
+  double step = std::min(1.0, longest_move_ / direction_.cwiseAbs().maxCoeff());
   for (int k = 0; k < kShortenings; ++k) {
     trial_x_ = x_ + step * direction_.reshaped(3, x_.cols());
     trial_energy_ = evaluate(state);
@@ -199,7 +201,7 @@ bool VesselWall::advance(const WallState& state) noexcept {
       const double best = 0.5 * slope * step / (slope + (trial_energy_ - energy_) / step);  // of the parabola
       step *= std::clamp(best / step, 0.1, 0.5);
     } else {
-      step *= 0.5;
+      step *= 0.25;
     }
   }
   return false;

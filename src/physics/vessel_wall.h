@@ -34,9 +34,10 @@ struct WallOptions {
   double dt = 2e-3;            // [s]
   double density = 1060.0;     // [kg/m3]
   double damping = 100.0;      // [1/s], against the surroundings
-  double tolerance = 2e-6;     // [N], largest unbalanced force of a node
+  double tolerance = 5e-6;     // [N], largest unbalanced force of a node
   int max_iterations = 8;
   int memory = 5;              // pairs of the BFGS history
+  bool single_precision = true;  // of the elements' forces
 };
 
 struct WallSummary {
@@ -125,6 +126,7 @@ class VesselWall {
   VesselMesh mesh_;
   WallOptions options_;
   WallElements elements_;
+  double longest_move_ = 0.0;         // [m], of a node in one iteration: the wall's thickness
   Eigen::VectorXd inertia_;           // [N/m], of each node, (1 + a h) m / h^2
   std::vector<char> held_;
   std::vector<std::array<int, 4>> neighbours_;  // of each node: inner, outer, before, after

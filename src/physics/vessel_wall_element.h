@@ -4,16 +4,16 @@
 //   C_13, C_23  at the middles of the sides, interpolated (Dvorkin & Bathe, Eng. Comput. 1:77, 1984): no transverse shear locking
 //   C_33        at the four edges through the wall, interpolated (Betsch & Stein, Commun. Num. Meth. 11:899, 1995): none by curvature
 //   volume      J of points only by Lame's share that plane stress leaves to them (hyperelastic.h); the rest of lambda by the
-//               element's mean J: (lambda - lambda_point)/2 V (mean J - 1)^2 (mean dilatation: Nagtegaal, Parks & Rice, CMAME 4:153,
+//               element's own volume v: (lambda - lambda_point)/2 V (v/V - 1)^2 (mean dilatation: Nagtegaal, Parks & Rice, CMAME 4:153,
 //               1974): no volume locking, and one element through the wall bends as an incompressible plate does.
 // Symbols: x(xi,eta,zeta) = sum over the eight products of coordinates of c_m, c by a Walsh-Hadamard transform of the corners.
-// Exact for constant strain in elements whose edges through the wall are parallel. Elements are computed four at a time.
+// Exact for constant strain in elements whose edges through the wall are parallel. Elements are computed in packs (vessel_wall_kernel.h).
 // Neglects: locking of long thin elements that bend in the wall's own plane. Test: vessel_wall_element_test.
 
 #include <vector>
 
-#include "physics/hyperelastic.h"
 #include "physics/vessel_mesh.h"
+#include "physics/vessel_wall_kernel.h"
 
 namespace filum {
 
@@ -30,7 +30,8 @@ Eigen::Matrix<double, 8, 1> corner_weights(const Vec3& local) noexcept;
 
 class WallElements {
  public:
-  WallElements(const VesselMesh& mesh, const std::vector<WallLayer>& layers);
+  /// `single_precision`: forces come from the kernel in float, at half the cost, with errors of about 1e-7 of the stiffest stress.
+  WallElements(const VesselMesh& mesh, const std::vector<WallLayer>& layers, bool single_precision = false);
 
   /// Energy [J]; forces -dE/dx [N] are added to `force` (3 x n). `soundness`: share of stiffness left in each element.
   /// An element turned inside out makes the energy infinite. Allocates nothing.
@@ -39,58 +40,43 @@ class WallElements {
   using Stiffness = Eigen::Matrix<double, 24, 24>;
   /// d(-force)/dx [N/m] of one element, corner by corner. `taut`: fibres count as in tension where they are not.
   Stiffness stiffness(int element, const Points& x, bool taut = false) const noexcept;
+  /// Volume now, with its gradient by corners and the second derivatives if asked for. [m3]
+  static double volume(const Corners& x, Eigen::Matrix<double, 24, 1>* gradient = nullptr, Stiffness* second = nullptr) noexcept;
   /// Stress-free volume. [m3]
   double volume(int element) const noexcept { return volume_[static_cast<std::size_t>(element)]; }
 
   struct Strain {
     double around = 1.0, along = 1.0, through = 1.0;  // stretches at the middle of an element
-    double J = 1.0;                                   // mean
+    double J = 1.0;                                   // of the element's volume
   };
   Strain strain(int element, const Points& x) const noexcept;
 
-  /// Cauchy stress [Pa] at a point of an element, in the frame of x, without what the mean J adds if `mean` is false.
+  /// Cauchy stress [Pa] at a point of an element, in the frame of x.
   Mat3 stress(int element, const Vec3& local, const Points& x) const noexcept;
   const std::vector<WallLayer>& layers() const noexcept { return layers_; }
   int layer_at(int element, double zeta) const noexcept;
   int n_nodes() const noexcept { return n_nodes_; }
 
  private:
-  struct Station {  // Gauss points of one zeta
-    double zeta, share;  // share: of the element's thickness
-    int layer;
-  };
-  struct Row {  // elements that fill the same span of the wall
-    std::array<double, 2> span;
-    std::vector<Station> stations;
-    double lambda_mean = 0.0;  // [Pa]
-  };
-  struct Pack {
-    int row = 0;
-    std::size_t first_point = 0;
-    std::array<int, kLanes> element{};          // -1: empty lane
-    std::array<std::array<int, 8>, kLanes> node{};
-  };
-  struct Point {
-    LawGeometry<Lanes> geometry;
-    Lanes weight;  // [m3]
-  };
   struct Scalars {
     LawGeometry<double> geometry;
     double weight;
   };
 
   void add_row(const std::array<double, 2>& span);
-  void pack_row(int row, const VesselMesh& mesh);
+  template <class N>
+  void pack_row(int row, WallKernel<N>& kernel);
+  template <class N>
+  void fill_lane(WallKernel<N>& kernel, typename WallKernel<N>::Pack& pack, int lane, int element, bool real);
   Scalars scalars(const Corners& rest, const Vec3& local, double share, const WallLaw& law) const;
-  double pack_forces(const Pack& pack, const Points& x, const std::vector<double>& soundness, Points& force) const noexcept;
 
   int n_nodes_ = 0;
+  bool single_precision_ = false;
   std::vector<WallLayer> layers_;
   std::vector<LawConstants> constants_;
-  std::vector<Row> rows_;
-  std::vector<Pack> packs_;
-  std::vector<Point> points_;
-  std::vector<Lanes> pack_volume_;
+  std::vector<KernelRow> rows_;
+  WallKernel<double> double_;  // one of the two is empty
+  WallKernel<float> single_;
   std::vector<int> row_of_;
   std::vector<double> volume_;
   std::vector<std::array<int, 8>> nodes_of_;

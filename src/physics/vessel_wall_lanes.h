@@ -1,7 +1,7 @@
 #pragma once
-// Four doubles at once: the elements of the wall are computed in packs of four. Plain vector types of GCC and clang, so that
-// processors without AVX run the same code in halves. sqrt, exp and choice exist for double as well, for the scalar twin.
-// Test: vessel_wall_lanes_test.
+// Several numbers at once: the elements of the wall are computed in packs, of four in double precision and of eight in single. Plain
+// vector types of GCC and clang, so that processors without AVX run the same code in halves. sqrt, exp and choice exist for
+// double as well, for the scalar twin. Test: vessel_wall_lanes_test.
 
 #include <cmath>
 #include <cstdint>
@@ -9,55 +9,89 @@
 
 namespace filum {
 
-inline constexpr int kLanes = 4;
-using Lanes = double __attribute__((vector_size(32)));
-using LaneBits = std::int64_t __attribute__((vector_size(32)));
-
-inline Lanes all_lanes(double v) noexcept { return Lanes{v, v, v, v}; }
-inline double sum_of(const Lanes& v) noexcept { return (v[0] + v[1]) + (v[2] + v[3]); }
-inline double sum_of(double v) noexcept { return v; }
-
-template <class S>
-S value_of(double v) noexcept;
+template <class Number>
+struct LaneFormat;
 template <>
-inline double value_of<double>(double v) noexcept {
-  return v;
-}
+struct LaneFormat<double> {
+  using Vector = double __attribute__((vector_size(32)));
+  using Bit = std::int64_t;
+  using Bits = Bit __attribute__((vector_size(32)));
+  static constexpr double kShift = 6755399441055744.0;  // 1.5 x 2^52: adding it rounds to an integer, kept in the low bits
+  static constexpr double kLn2High = 0.693147180369123816490, kLn2Low = 1.90821492927058770002e-10;
+  static constexpr int kFraction = 52, kBias = 1023, kTerms = 13;
+};
 template <>
-inline Lanes value_of<Lanes>(double v) noexcept {
-  return all_lanes(v);
-}
+struct LaneFormat<float> {
+  using Vector = float __attribute__((vector_size(32)));
+  using Bit = std::int32_t;
+  using Bits = Bit __attribute__((vector_size(32)));
+  static constexpr float kShift = 12582912.0f;  // 1.5 x 2^23
+  static constexpr float kLn2High = 0.693359375f, kLn2Low = -2.12194440e-4f;
+  static constexpr int kFraction = 23, kBias = 127, kTerms = 7;
+};
+
+template <class Number_>
+struct Lanes {
+  using Number = Number_;
+  using Vector = typename LaneFormat<Number>::Vector;
+  static constexpr int kWidth = 32 / sizeof(Number);
+  Vector v = {};
+  Lanes() = default;
+  Lanes(Vector w) noexcept : v(w) {}
+  Lanes(double s) noexcept : v(Vector{} + static_cast<Number>(s)) {}
+  Number operator[](int k) const noexcept { return v[k]; }
+  void set(int k, double s) noexcept { v[k] = static_cast<Number>(s); }
+  Lanes& operator+=(const Lanes& b) noexcept {
+    v += b.v;
+    return *this;
+  }
+  friend Lanes operator+(const Lanes& a, const Lanes& b) noexcept { return Lanes(a.v + b.v); }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) noexcept { return Lanes(a.v - b.v); }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) noexcept { return Lanes(a.v * b.v); }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) noexcept { return Lanes(a.v / b.v); }
+};
 
 inline double root_of(double v) noexcept { return std::sqrt(v); }
-inline Lanes root_of(const Lanes& v) noexcept { return Lanes{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])}; }
+template <class N>
+Lanes<N> root_of(const Lanes<N>& a) noexcept {
+  Lanes<N> r;
+  for (int k = 0; k < Lanes<N>::kWidth; ++k) r.v[k] = std::sqrt(a.v[k]);
+  return r;
+}
 
 inline double least_of(double a, double b) noexcept { return a < b ? a : b; }
-inline Lanes least_of(const Lanes& a, const Lanes& b) noexcept { return a < b ? a : b; }
+template <class N>
+Lanes<N> least_of(const Lanes<N>& a, const Lanes<N>& b) noexcept {
+  return Lanes<N>(a.v < b.v ? a.v : b.v);
+}
 inline double positive_part(double a) noexcept { return a > 0.0 ? a : 0.0; }
-inline Lanes positive_part(const Lanes& a) noexcept {
-  const Lanes zero = all_lanes(0.0);
-  return a > zero ? a : zero;
+template <class N>
+Lanes<N> positive_part(const Lanes<N>& a) noexcept {
+  const typename Lanes<N>::Vector zero = {};
+  return Lanes<N>(a.v > zero ? a.v : zero);
 }
 
 inline double exp_of(double v) noexcept { return std::exp(v); }
 
-/// e^v for |v| < 700 to 1e-15: v = n ln 2 + r, e^r by its series to r^13, 2^n by the exponent's bits.
-inline Lanes exp_of(const Lanes& v) noexcept {
-  constexpr double kLog2e = 1.4426950408889634, kLn2High = 0.693147180369123816490, kLn2Low = 1.90821492927058770002e-10;
-  constexpr double kShift = 6755399441055744.0;  // 1.5 x 2^52: adding it rounds to an integer, kept in the low bits
-  const Lanes shifted = v * kLog2e + kShift;
-  const Lanes n = shifted - kShift;
-  const Lanes r = (v - n * kLn2High) - n * kLn2Low;
-  Lanes s = all_lanes(1.0 / 6227020800.0);
-  constexpr double kInverse[] = {1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0, 1.0 / 40320.0, 1.0 / 5040.0,
-                                 1.0 / 720.0,       1.0 / 120.0,      1.0 / 24.0,      1.0 / 6.0,      0.5,           1.0, 1.0};
-  for (const double c : kInverse) s = s * r + c;
-  LaneBits bits;
+/// e^v to the last digits for |v| < 80: v = n ln 2 + r, e^r by its series, 2^n by the exponent's bits.
+template <class N>
+Lanes<N> exp_of(const Lanes<N>& a) noexcept {
+  using F = LaneFormat<N>;
+  using Vector = typename Lanes<N>::Vector;
+  using Bits = typename F::Bits;
+  constexpr double kInverse[] = {1.0,           1.0,           0.5,           1.0 / 6.0,      1.0 / 24.0,      1.0 / 120.0,      1.0 / 720.0,
+                                 1.0 / 5040.0,  1.0 / 40320.0, 1.0 / 362880.0, 1.0 / 3628800.0, 1.0 / 39916800.0, 1.0 / 479001600.0, 1.0 / 6227020800.0};
+  const Vector shifted = a.v * static_cast<N>(1.4426950408889634) + F::kShift;
+  const Vector n = shifted - F::kShift;
+  const Vector r = (a.v - n * F::kLn2High) - n * F::kLn2Low;
+  Vector s = Vector{} + static_cast<N>(kInverse[F::kTerms]);
+  for (int k = F::kTerms - 1; k >= 0; --k) s = s * r + static_cast<N>(kInverse[k]);
+  Bits bits;
   std::memcpy(&bits, &shifted, sizeof bits);
-  bits = (bits << 52) + (std::int64_t{1023} << 52);
-  Lanes power;
+  bits = (bits << F::kFraction) + (typename F::Bit{F::kBias} << F::kFraction);
+  Vector power;
   std::memcpy(&power, &bits, sizeof power);
-  return s * power;
+  return Lanes<N>(s * power);
 }
 
 }  // namespace filum

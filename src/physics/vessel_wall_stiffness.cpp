@@ -9,7 +9,6 @@ namespace filum {
 namespace {
 
 using Eight = Eigen::Matrix<double, 8, 1>;
-constexpr double kGauss = 0.57735026918962576451;
 
 /// Column m: derivatives of the corner weights' product m; corner a has x_a = sum_m sign c_m, so c = x P, P_am = sign / 8.
 EightEight corners_to_products() noexcept {
@@ -27,6 +26,12 @@ Corners gather(const std::array<int, 8>& nodes, const Points& x) noexcept {
   Corners c;
   for (int a = 0; a < 8; ++a) c.col(a) = x.col(nodes[static_cast<std::size_t>(a)]);
   return c;
+}
+
+Mat3 cross_matrix(const Vec3& a) noexcept {
+  Mat3 m;
+  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return m;
 }
 
 using Gradients = Eigen::Matrix<double, 24, 6>;
@@ -80,74 +85,82 @@ CovariantForms covariant_forms(const Vec3& local) noexcept {
   return q;
 }
 
+double WallElements::volume(const Corners& x, Eigen::Matrix<double, 24, 1>* gradient, Stiffness* second) noexcept {
+  static const EightEight P = corners_to_products();
+  const Corners c = x * P;
+  const auto at = [&](int m) { return Vec3(c.col(m)); };
+  double v = 0.0;
+  Corners g = Corners::Zero();
+  Stiffness H = Stiffness::Zero();  // by products, then by corners
+  for (const VolumeTerm& t : kVolumeTerms) {
+    v += t.weight * at(t.i).dot(at(t.j).cross(at(t.k)));
+    const std::array<int, 3> turn = {t.i, t.j, t.k};
+    for (std::size_t r = 0; r < 3; ++r) {
+      const int i = turn[r], j = turn[(r + 1) % 3], k = turn[(r + 2) % 3];
+      g.col(i) += t.weight * at(j).cross(at(k));
+      H.block<3, 3>(3 * i, 3 * j) -= t.weight * cross_matrix(at(k));
+      H.block<3, 3>(3 * i, 3 * k) += t.weight * cross_matrix(at(j));
+    }
+  }
+  if (gradient) *gradient = Corners(g * P.transpose()).reshaped();
+  if (!second) return v;
+  Eigen::Matrix<double, 24, 24> spread = Stiffness::Zero();
+  for (int a = 0; a < 8; ++a)
+    for (int m = 0; m < 8; ++m) spread.block<3, 3>(3 * a, 3 * m).diagonal().setConstant(P(a, m));
+  *second = spread * H * spread.transpose();
+  return v;
+}
+
 WallElements::Stiffness WallElements::stiffness(int element, const Points& x, bool taut) const noexcept {
   const auto e = static_cast<std::size_t>(element);
-  const Row& row = rows_[static_cast<std::size_t>(row_of_[e])];
+  const KernelRow& row = rows_[static_cast<std::size_t>(row_of_[e])];
   const Corners corners = gather(nodes_of_[e], x);
-  const auto each_point = [&](const auto& use) {
-    for (const Station& s : row.stations)
-      for (const double eta : {-kGauss, kGauss})
-        for (const double xi : {-kGauss, kGauss}) {
-          const Vec3 local(xi, eta, s.zeta);
-          const CovariantForms forms = covariant_forms(local);
-          const Six C = covariant(forms, corners);
-          const Scalars point = scalars(rest_[e], local, s.share, layers_[static_cast<std::size_t>(s.layer)].law);
-          Six dJ;
-          const double J = volume_ratio(point.geometry, C.data(), dJ.data());
-          use(constants_[static_cast<std::size_t>(s.layer)], forms, C, point, J, dJ);
-        }
-  };
-  double filled = 0.0;
-  each_point([&](const LawConstants&, const CovariantForms&, const Six&, const Scalars& p, double J, const Six&) { filled += p.weight * J; });
-  const double pressure = row.lambda_mean * (filled / volume_[e] - 1.0);
-  Stiffness K = Stiffness::Zero();
-  Eigen::Matrix<double, 24, 1> swelling = Eigen::Matrix<double, 24, 1>::Zero();  // d(filled)/dx
-  each_point([&](const LawConstants& law, const CovariantForms& forms, const Six& C, const Scalars& p, double J, const Six& dJ) {
-    const Gradients B = gradients(forms, corners);
-    Six T;
-    law_energy(law, p.geometry, C.data(), J, dJ.data(), T.data());
-    const SixSix D = law_tangent(law, p.geometry, C, taut) + pressure * volume_ratio_tangent(p.geometry, C);
-    K.noalias() += p.weight * B * D * B.transpose();
-    swelling += p.weight * B * dJ;
-    EightEight geometric = EightEight::Zero();
-    for (std::size_t m = 0; m < 6; ++m) geometric += 2.0 * p.weight * (T[static_cast<int>(m)] + pressure * dJ[static_cast<int>(m)]) * forms[m];
-    for (int a = 0; a < 8; ++a)
-      for (int b = 0; b < 8; ++b) K.block<3, 3>(3 * a, 3 * b).diagonal().array() += geometric(a, b);
-  });
-  return K + row.lambda_mean / volume_[e] * swelling * swelling.transpose();
+  Eigen::Matrix<double, 24, 1> swelling;
+  Stiffness bent;
+  const double pressure = row.lambda_mean * (volume(corners, &swelling, &bent) / volume_[e] - 1.0);
+  Stiffness K = row.lambda_mean / volume_[e] * swelling * swelling.transpose() + pressure * bent;
+  for (const WallStation& s : row.stations)
+    for (const double eta : {-kGauss, kGauss})
+      for (const double xi : {-kGauss, kGauss}) {
+        const CovariantForms forms = covariant_forms(Vec3(xi, eta, s.zeta));
+        const Six C = covariant(forms, corners);
+        const Scalars p = scalars(rest_[e], Vec3(xi, eta, s.zeta), s.share, layers_[static_cast<std::size_t>(s.layer)].law);
+        const LawConstants& law = constants_[static_cast<std::size_t>(s.layer)];
+        Six dJ, T;
+        const double J = volume_ratio(p.geometry, C.data(), dJ.data());
+        law_energy(law, p.geometry, C.data(), J, dJ.data(), T.data());
+        const Gradients B = gradients(forms, corners);
+        K.noalias() += p.weight * B * law_tangent(law, p.geometry, C, taut) * B.transpose();
+        EightEight geometric = EightEight::Zero();
+        for (std::size_t m = 0; m < 6; ++m) geometric += 2.0 * p.weight * T[static_cast<int>(m)] * forms[m];
+        for (int a = 0; a < 8; ++a)
+          for (int b = 0; b < 8; ++b) K.block<3, 3>(3 * a, 3 * b).diagonal().array() += geometric(a, b);
+      }
+  return K;
 }
 
 WallElements::Strain WallElements::strain(int element, const Points& x) const noexcept {
   const auto e = static_cast<std::size_t>(element);
   const CovariantForms forms = covariant_forms(Vec3::Zero());
-  const Six C = covariant(forms, gather(nodes_of_[e], x)), G = covariant(forms, rest_[e]);
-  return {std::sqrt(C[0] / G[0]), std::sqrt(C[1] / G[1]), std::sqrt(C[2] / G[2]), std::sqrt(matrix_of(C).determinant() / matrix_of(G).determinant())};
+  const Corners corners = gather(nodes_of_[e], x);
+  const Six C = covariant(forms, corners), G = covariant(forms, rest_[e]);
+  return {std::sqrt(C[0] / G[0]), std::sqrt(C[1] / G[1]), std::sqrt(C[2] / G[2]), volume(corners) / volume_[e]};
 }
 
 Mat3 WallElements::stress(int element, const Vec3& local, const Points& x) const noexcept {
   const auto e = static_cast<std::size_t>(element);
-  const Row& row = rows_[static_cast<std::size_t>(row_of_[e])];
   const Corners corners = gather(nodes_of_[e], x);
-  double filled = 0.0;
-  const auto at = [&](const Vec3& where, int layer, double share, Six& T, double pressure) {
-    const Six C = covariant(covariant_forms(where), corners);
-    const Scalars p = scalars(rest_[e], where, share, layers_[static_cast<std::size_t>(layer)].law);
-    Six dJ;
-    const double J = volume_ratio(p.geometry, C.data(), dJ.data());
-    filled += p.weight * J;
-    law_energy(constants_[static_cast<std::size_t>(layer)], p.geometry, C.data(), J, dJ.data(), T.data());
-    T += pressure * dJ;
-    return J;
-  };
-  Six T;
-  for (const Station& s : row.stations)
-    for (const double eta : {-kGauss, kGauss})
-      for (const double xi : {-kGauss, kGauss}) at(Vec3(xi, eta, s.zeta), s.layer, s.share, T, 0.0);
-  const double J = at(local, layer_at(element, local.z()), 1.0, T, row.lambda_mean * (filled / volume_[e] - 1.0));
+  const auto layer = static_cast<std::size_t>(layer_at(element, local.z()));
+  const Six C = covariant(covariant_forms(local), corners);
+  const Scalars p = scalars(rest_[e], local, 1.0, layers_[layer].law);
+  Six dJ, T;
+  const double J = volume_ratio(p.geometry, C.data(), dJ.data());
+  law_energy(constants_[layer], p.geometry, C.data(), J, dJ.data(), T.data());
   const Mat3 g = corners * corners_to_products() * product_derivatives(local);
   Mat3 S = matrix_of(T);
   S.diagonal() *= 2.0;
-  return g * S * g.transpose() / J;
+  const double pressure = rows_[static_cast<std::size_t>(row_of_[e])].lambda_mean * (volume(corners) / volume_[e] - 1.0);
+  return g * S * g.transpose() / J + pressure * Mat3::Identity();
 }
 
 int WallElements::layer_at(int element, double zeta) const noexcept {
