@@ -15,6 +15,7 @@ namespace filum {
 
 struct BrainModel;   // world/brain_model.h
 struct NeedleModel;  // world/needle_model.h
+struct VesselModel;  // world/vessel_model.h
 
 struct Model {
   SceneDescription description;
@@ -32,6 +33,7 @@ struct Model {
   std::vector<PelletParameters> pellets;  // small objects to be picked up; most scenes have none
   std::shared_ptr<const BrainModel> brain;  // instead of the thread, in scenes of brain retraction
   std::shared_ptr<const NeedleModel> needle;  // swaged to the long end of the thread; most scenes have none
+  std::shared_ptr<const VesselModel> vessel;  // tissue to be stitched
   std::vector<std::string> sources;  // files it was read from, relative to the root
 };
 

@@ -22,12 +22,21 @@ NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle
   options_.gravity = model.step.gravity;
   options_.sheet = model.description.floor_height;
   for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].pads = model.instruments[i].pads;
+  if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape());
 }
 
-NeedleState NeedleScene::start() const {
-  NeedleState s;
-  s.X_WN = model_.needle->start;
-  return s;
+void NeedleScene::start(State& s) const {
+  s.has_needle = 1;
+  s.needle.X_WN = model_.needle->start;
+  if (tissue_) s.tissue = tissue_->start(s.needle.X_WN * body_.shape().point(body_.shape().length()));
+}
+
+void NeedleScene::size_observation(Observation& o) const {
+  if (tissue_) tissue_->size_observation(o);
+}
+
+void NeedleScene::match(const State& s) noexcept {
+  if (tissue_) tissue_->match(s.tissue);
 }
 
 double NeedleScene::stop_angle(const InstrumentParameters& tool) const noexcept {
@@ -78,11 +87,12 @@ void NeedleScene::meet_tools(State& s, const std::vector<ObstacleBody>& from, Ob
 
 void NeedleScene::before_thread(const State& s, ImplicitRod& rod) noexcept {
   body_.tethers.clear();
-  RodTether swage;
+  std::vector<RodTether>& on_thread = rod.tethers.list;
+  on_thread.clear();
+  RodTether& swage = on_thread.emplace_back();
   swage.at_end = true;
+  if (tissue_) tissue_->hold(s.tissue, s.needle.X_WN, s.thread, body_.tethers, on_thread);
   swage.stiffness = body_.look_ahead(s.needle, options_, 0.0, swage.anchor);
-  rod.tethers.list.clear();
-  rod.tethers.list.push_back(swage);
 }
 
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {
@@ -95,6 +105,8 @@ void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexc
   for (std::size_t i = 0; i < body_.tools.size(); ++i) before[i] = s.needle.grips[i].held != 0;
   const NeedleSummary summary = body_.step(s.needle, options_);
   if (!summary.sound || summary.residual > kTroubleForce) say(o, "solver-trouble", -1, summary.residual, "N");
+  body_.tethers.pop_back();
+  if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.thread, body_.tethers, rod.tethers.list, o);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {
     s.force[i] += body_.tools[i].force;
     s.torque[i] += body_.tools[i].torque;
@@ -111,6 +123,7 @@ void NeedleScene::observe(const State& s, Observation& o) const noexcept {
   n.point_direction_W = s.needle.X_WN.q * shape.tangent(shape.length());
   n.swage_W = s.needle.X_WN * shape.point(0.0);
   n.thread_pull = thread_pull_;
+  if (tissue_) tissue_->observe(s.tissue, s.thread, o);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {
     const NeedleGrip& g = s.needle.grips[i];
     n.held[i] = g.held != 0;

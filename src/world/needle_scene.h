@@ -4,11 +4,14 @@
 // A step of thread and needle together: the needle is moved as if it had no thread, which tells how firmly its swage is held there;
 // the thread is stepped with its end held just so (rod_tether.h); then the needle follows the thread's end.
 
+#include <memory>
+
 #include "physics/implicit_rod.h"
 #include "physics/needle.h"
 #include "world/model.h"
 #include "world/observation.h"
 #include "world/state.h"
+#include "world/vessel_scene.h"
 
 namespace filum {
 
@@ -16,7 +19,10 @@ class NeedleScene {
  public:
   explicit NeedleScene(const Model& model);
 
-  NeedleState start() const;
+  void start(State& s) const;
+  void size_observation(Observation& o) const;
+  /// After a state was restored.
+  void match(const State& s) noexcept;
 
   /// Jaws that close on the wire stop at it and squeeze it. Call before the instruments move.
   void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
@@ -35,6 +41,7 @@ class NeedleScene {
   const Model& model_;
   NeedleBody body_;
   NeedleOptions options_;
+  std::unique_ptr<VesselScene> tissue_;  // in scenes with some
   double thread_pull_ = 0.0;
 };
 

@@ -8,6 +8,7 @@
 #include "world/brain_file.h"
 #include "world/measured_model.h"
 #include "world/needle_file.h"
+#include "world/vessel_file.h"
 #include "world/world.h"
 
 namespace filum {
@@ -204,12 +205,13 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
   m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));
   read_instruments(root, scene, *m);
+  d.dt = m->step.dt = scene.quantity("step", "ms", {1e-4, 5e-3});
+  if (scene.has("tissue")) read_tissue(root, scene.map("tissue"), *m);
   read_pellets(scene, *m);
   d.has_field = scene.has("field");
   if (d.has_field) d.field_W = scene.vec3("field", "mm");
   m->step.max_iterations = scene.integer("newton_iterations", 1, 100);
   m->step.longest_move = 0.5 * m->resolution.longest;
-  d.dt = m->step.dt = scene.quantity("step", "ms", {1e-4, 5e-3});
   scene.finish();
   return m;
 }

@@ -9,6 +9,7 @@
 #include "physics/instrument.h"
 #include "physics/needle.h"
 #include "world/brain_model.h"
+#include "world/vessel_model.h"
 #include "physics/pellet.h"
 
 namespace filum {
@@ -24,6 +25,7 @@ struct State {
   std::vector<PelletState> pellets;
   NeedleState needle;                       // of scenes with one
   std::int32_t has_needle = 0;
+  VesselState tissue;                       // of scenes with some
   double overloaded = 0.0;                  // [N], highest tension since the last overload event, 0 when below
   double cut_low = -1.0, cut_high = -1.0;   // [m], arc of the cuts below and above the post, -1 none
   BrainState brain;                         // empty in scenes without one

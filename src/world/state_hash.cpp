@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "world/brain_scene.h"
+#include "world/vessel_scene.h"
 
 namespace filum {
 namespace {
@@ -120,6 +121,8 @@ std::uint64_t hash_state(const State& s) noexcept {
   if (s.has_needle != 0) {
     const std::uint64_t needle = hash_needle(s.needle);
     h = hash_bytes(&needle, sizeof needle, h);
+    const std::uint64_t tissue = hash_vessel(s.tissue);
+    h = hash_bytes(&tissue, sizeof tissue, h);
   }
   if (s.brain.blades.empty()) return h;
   for (const auto& [name, hash] : brain_hashes(s.brain)) h = hash_bytes(&hash, sizeof hash, h);
@@ -130,7 +133,10 @@ std::vector<std::pair<std::string, std::uint64_t>> array_hashes(const State& s) 
   const auto all = hashes(s);
   std::vector<std::pair<std::string, std::uint64_t>> named;
   for (std::size_t k = 0; k < kArrays; ++k) named.emplace_back(kNames[k], all[k]);
-  if (s.has_needle != 0) named.emplace_back("needle", hash_needle(s.needle));
+  if (s.has_needle != 0) {
+    named.emplace_back("needle", hash_needle(s.needle));
+    named.emplace_back("tissue", hash_vessel(s.tissue));
+  }
   if (!s.brain.blades.empty())
     for (const auto& [name, hash] : brain_hashes(s.brain)) named.emplace_back(name, hash);
   return named;

@@ -91,8 +91,8 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
   }
   if (model->needle) {
     needle = std::make_unique<NeedleScene>(*model);
-    state.needle = needle->start();
-    state.has_needle = 1;
+    needle->start(state);
+    needle->size_observation(observation);
   }
   state.pellets = pellets.start();
   state.force.assign(n_tools, Vec3::Zero());
@@ -296,6 +296,7 @@ const State& World::state() const noexcept { return impl_->state; }
 void World::restore(const State& state) {
   impl_->state = state;
   if (impl_->brain) impl_->brain->match(state.brain);
+  if (impl_->needle) impl_->needle->match(state);
   impl_->observation.n_events = 0;
   impl_->observe();
 }

@@ -1,0 +1,317 @@
+#include "physics/needle_track.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/thread_grasp.h"
+
+namespace filum {
+namespace {
+
+constexpr double kPointGrip = 1.0;  // [-], friction of the point where it rests: it digs in
+constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind a knot to have left it
+
+double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
+
+}  // namespace
+
+NeedleTracks::NeedleTracks(TrackMaterial material, const NeedleShape& needle, const VesselWall& wall)
+    : material_(std::move(material)), needle_(needle), walk_(wall) {
+  uses_.reserve(kMaxTracks * kTrackKnots);
+}
+
+RodTether NeedleTracks::tether_of(const VesselWall& wall, const WallState& w, const TrackKnot& k, double arc, const Vec3& along, const Vec3& x,
+                                  double share) const noexcept {
+  const PunctureLayer& l = layer(wall.layer_at(k.at));
+  RodTether t;
+  t.arc = arc;
+  t.anchor = wall.position(w, k.at);
+  t.along = along;
+  t.stiffness = material_.hold * (Mat3::Identity() - along * along.transpose());
+  t.stick = material_.hold;
+  t.limit = share * l.friction * k.span + material_.bend_friction * k.lateral;
+  t.drag = share * l.drag * k.span;
+  t.start = (x - t.anchor).dot(along);
+  return t;
+}
+
+void NeedleTracks::hold(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, const RodState* thread,
+                        std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept {
+  uses_.clear();
+  const double whole = thread != nullptr ? thread_length(*thread) : 0.0;
+  for (int i = 0; i < s.n; ++i) {
+    const NeedleTrack& track = s.tracks[static_cast<std::size_t>(i)];
+    for (int k = 0; k < track.n; ++k) {
+      const TrackKnot& knot = track.knots[static_cast<std::size_t>(k)];
+      if (knot.strand >= 0.0) {
+        if (on_needle.size() == on_needle.capacity()) continue;
+        uses_.push_back({i, k, static_cast<int>(on_needle.size()), true});
+        const Vec3 along = X_WN.q * needle_.tangent(knot.strand);
+        on_needle.push_back(tether_of(wall, w, knot, knot.strand, along, X_WN * needle_.point(knot.strand), 1.0));
+      } else if (thread != nullptr && on_thread.size() < on_thread.capacity()) {
+        const auto [edge, f] = locate_arc(*thread, whole + knot.strand);
+        const Vec3 a = thread->x.col(edge), b = thread->x.col(edge + 1);
+        uses_.push_back({i, k, static_cast<int>(on_thread.size()), false});
+        on_thread.push_back(tether_of(wall, w, knot, whole + knot.strand, (b - a).normalized(), (1.0 - f) * a + f * b, material_.thread_share));
+      }
+    }
+  }
+  hold_point(wall, w, s, X_WN, on_needle);
+}
+
+void NeedleTracks::hold_point(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN,
+                              std::vector<RodTether>& on_needle) noexcept {
+  point_tether_ = -1;
+  if (s.point.kind == PointContact::Kind::none || on_needle.size() == on_needle.capacity()) return;
+  const double L = needle_.length();
+  const Vec3 along = X_WN.q * needle_.tangent(L);
+  RodTether t;
+  t.arc = L;
+  t.anchor = wall.position(w, s.point.at);
+  t.along = along;
+  t.start = (X_WN * needle_.point(L) - t.anchor).dot(along);
+  if (s.point.kind == PointContact::Kind::outside) {
+    t.stiffness = material_.point_stiffness * Mat3::Identity();
+  } else if (s.point.kind == PointContact::Kind::boundary) {
+    if (t.start > 0.0) t.stiffness = material_.point_stiffness * along * along.transpose();  // it only stops the point, it does not hold it back
+  } else {
+    const PunctureLayer& l = layer(wall.layer_at(s.point.at));
+    const NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
+    const double ahead = std::max(0.0, L - track.knots[static_cast<std::size_t>(track.n - 1)].strand);
+    t.stick = material_.point_stiffness;
+    t.limit = l.cutting + l.friction * ahead;
+    t.drag = l.drag * ahead;
+  }
+  point_tether_ = static_cast<int>(on_needle.size());
+  on_needle.push_back(t);
+}
+
+int NeedleTracks::follow(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const RodState* thread, double dt,
+                         const std::vector<RodTether>& on_needle, const std::vector<RodTether>& on_thread, TrackEvent* list, int room) noexcept {
+  Events e{list, room, 0};
+  for (int i = 0; i < s.n; ++i) s.tracks[static_cast<std::size_t>(i)].pull = 0.0;
+  for (const Use& u : uses_) take_knot(wall, w, s, u, (u.needle ? on_needle : on_thread)[static_cast<std::size_t>(u.tether)], dt, e);
+  drop_passed(s, e);
+  if (thread != nullptr) {
+    const double whole = thread_length(*thread);
+    for (int i = 0; i < s.n; ++i) {
+      NeedleTrack& track = s.tracks[static_cast<std::size_t>(i)];
+      if (track.n == 0 || whole + track.knots[0].strand > 0.0) continue;
+      track.n = 0;  // the thread's end has gone through
+      track.ended = 1;
+    }
+  }
+  take_point(wall, w, s, X_WN, on_needle, e);
+  return e.n;
+}
+
+/// The load of one knot on the tissue, what slid through it, and whether it tears.
+void NeedleTracks::take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt, Events& e) noexcept {
+  NeedleTrack& track = s.tracks[static_cast<std::size_t>(u.track)];
+  TrackKnot& knot = track.knots[static_cast<std::size_t>(u.knot)];
+  const Vec3 load = -t.force;
+  const double lengthwise = t.force.dot(t.along);
+  knot.lateral = (t.force - lengthwise * t.along).norm();
+  knot.strand -= t.slid;
+  Mat3 k = t.stiffness;
+  if (t.slid == 0.0) k += t.stick * t.along * t.along.transpose();
+  wall.add_load(w, knot.at, load, k);
+  track.hole = std::max(track.hole, std::max(needle_.wire_radius, track.hole) + material_.wear * knot.lateral * std::abs(t.slid));
+  track.peak = std::max(track.peak, load.norm());
+  track.pull = std::max(track.pull, load.norm());
+  s.dissipated += t.limit * std::abs(t.slid) + t.drag * t.slid * t.slid / dt;
+  tear(wall, w, s, track, knot, load, e);
+}
+
+/// A knot that is pulled harder than its bite bears moves through the tissue until it is not.
+void NeedleTracks::tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, TrackKnot& knot, const Vec3& load,
+                        Events& e) noexcept {
+  const double pull = load.norm();
+  if (pull < 0.25 * material_.tear * needle_.wire_radius) return;  // bears that with the least bite there is
+  const double bears = material_.tear * walk_.bite(wall, knot.at);
+  if (pull <= bears) return;
+  if (track.torn == 0.0) e.say("tear", pull);
+  const double step = std::min(0.5 * needle_.wire_radius, (pull - bears) / material_.hold);
+  bool inside = false;
+  const WallPoint to = walk_.move(wall, w, wall.position(w, knot.at) + step * load / pull, knot.at, inside);
+  track.torn += step;
+  s.dissipated += pull * step;
+  if (inside) {
+    knot.at = to;
+    return;
+  }
+  const bool at_edge = walk_.bite(wall, to) < 0.5 * needle_.wire_radius;
+  if (!at_edge) {  // slid along a surface, not out of the edge
+    knot.at = to;
+    return;
+  }
+  e.say("torn-out", pull);
+  track.n = 0;
+  track.ended = 2;
+}
+
+/// Knots that the needle's point has been drawn back through hold nothing any more.
+void NeedleTracks::drop_passed(TrackState& s, Events& e) noexcept {
+  const double L = needle_.length();
+  for (int i = 0; i < s.n; ++i) {
+    NeedleTrack& track = s.tracks[static_cast<std::size_t>(i)];
+    if (track.n == 0 && s.open == i) {  // torn while the point was inside
+      s.open = -1;
+      s.point = {};
+    }
+    while (track.n > 0 && track.knots[static_cast<std::size_t>(track.n - 1)].strand > L + kDrawnBack) {
+      s.point.at = track.knots[static_cast<std::size_t>(track.n - 1)].at;
+      --track.n;
+      track.out = 0;
+      s.open = i;
+      s.point.kind = PointContact::Kind::within;
+      if (track.n > 0) continue;
+      e.say("pulled-back", 0.0);
+      track.ended = 1;
+      s.open = -1;
+      s.point = {};
+      if (i + 1 == s.n) track = {}, --s.n;
+    }
+  }
+}
+
+void NeedleTracks::take_point(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const std::vector<RodTether>& on_needle,
+                              Events& e) noexcept {
+  const double L = needle_.length();
+  const Vec3 tip = X_WN * needle_.point(L), along = X_WN.q * needle_.tangent(L);
+  s.point.force = 0.0;
+  if (point_tether_ >= 0 && s.point.kind != PointContact::Kind::none) {
+    const RodTether& t = on_needle[static_cast<std::size_t>(point_tether_)];
+    Mat3 k = t.stiffness;
+    if (t.stick > 0.0 && t.slid == 0.0) k += t.stick * t.along * t.along.transpose();
+    wall.add_load(w, s.point.at, -t.force, k);
+    switch (s.point.kind) {
+      case PointContact::Kind::outside:
+        rest_on_surface(wall, w, s, t, along, e);
+        break;
+      case PointContact::Kind::within:
+        advance(wall, w, s, t, tip, along);
+        break;
+      case PointContact::Kind::boundary:
+        break_through(wall, w, s, t, along, e);
+        break;
+      case PointContact::Kind::none:
+        break;
+    }
+  } else if (s.open < 0 && s.point.kind == PointContact::Kind::none) {
+    find_contact(wall, w, s, tip, along);
+  }
+  s.point_before = tip;
+}
+
+void NeedleTracks::find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& tip, const Vec3& along) noexcept {
+  const WallCrossing c = wall.crossing(w, s.point_before, tip);
+  if (!c.found || (tip - s.point_before).dot(c.normal) >= 0.0 || along.dot(c.normal) >= 0.0) return;
+  s.point.kind = PointContact::Kind::outside;
+  s.point.at = c.point;
+  s.point.normal = c.normal;
+  s.point.threshold = layer(c.layer).puncture;
+}
+
+void NeedleTracks::rest_on_surface(VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept {
+  const WallCrossing here = wall.nearest(w, t.anchor, 1e-4);
+  if (here.found) s.point.normal = here.normal;
+  const double normal = t.force.dot(s.point.normal);
+  if (normal <= 0.0) {
+    s.point = {};
+    return;
+  }
+  s.point.force = normal;
+  const double angle = std::asin(std::min(1.0, std::abs(along.dot(s.point.normal))));
+  const Vec3 sideways = t.force - normal * s.point.normal;
+  const bool shallow = angle < material_.least_angle;
+  if (shallow || sideways.norm() > kPointGrip * normal) {  // skids
+    const double give = shallow ? sideways.norm() : sideways.norm() - kPointGrip * normal;
+    const Vec3 to = t.anchor - give / material_.point_stiffness * sideways.normalized();
+    const WallCrossing next = wall.nearest(w, to, 2e-4);
+    if (next.found && next.surface == here.surface) s.point.at = next.point;
+    return;
+  }
+  if (normal < s.point.threshold) return;
+  e.say("puncture", normal);
+  s.dissipated += 0.5 * normal * normal / material_.point_stiffness;
+  open_track(wall, w, s, angle);
+}
+
+void NeedleTracks::open_track(const VesselWall& wall, const WallState&, TrackState& s, double angle) noexcept {
+  if (s.n == kMaxTracks) return;
+  s.open = s.n++;
+  NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
+  track = {};
+  track.part = wall.mesh().part[static_cast<std::size_t>(s.point.at.element)];
+  track.entry = s.point.at;
+  track.entry_angle = angle;
+  track.bite_entry = walk_.bite(wall, s.point.at);
+  track.hole = needle_.wire_radius;
+  lay_knot(wall, s, s.point.at);
+  s.point.kind = PointContact::Kind::within;
+}
+
+void NeedleTracks::lay_knot(const VesselWall& wall, TrackState& s, const WallPoint& at) noexcept {
+  NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
+  const double depth = wall.depth_at(at);
+  track.shallow = std::min(track.shallow, depth);
+  track.deep = std::max(track.deep, depth);
+  if (track.n == kTrackKnots) return;
+  TrackKnot knot;
+  knot.at = at;
+  knot.strand = needle_.length();
+  if (track.n > 0) knot.span = needle_.length() - track.knots[static_cast<std::size_t>(track.n - 1)].strand;
+  track.knots[static_cast<std::size_t>(track.n++)] = knot;
+}
+
+/// The point moves on in open tissue; it stops where another layer or the far side begins.
+void NeedleTracks::advance(const VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& tip, const Vec3& along) noexcept {
+  const double u = (tip - t.anchor).dot(along), elastic = std::clamp(u, 0.0, t.limit / t.stick);
+  s.dissipated += t.limit * std::max(0.0, t.slid);
+  s.point.force = -t.force.dot(along);
+  bool inside = false;
+  const WallPoint to = walk_.move(wall, w, tip - elastic * along, s.point.at, inside);
+  const Vec3 out = wall.directions(w, to).col(2).normalized();
+  if (!inside) {
+    const WallCrossing c = wall.nearest(w, wall.position(w, to), 1e-4);
+    if (!c.found || along.dot(c.normal) <= 0.0) return;  // still at the way in
+    s.point.kind = PointContact::Kind::boundary;
+    s.point.leaving = 1;
+    s.point.normal = c.normal;
+    s.point.threshold = material_.exit_share * layer(wall.layer_at(to)).puncture;
+  } else if (wall.layer_at(to) != wall.layer_at(s.point.at)) {
+    s.point.kind = PointContact::Kind::boundary;
+    s.point.leaving = 0;
+    s.point.normal = along.dot(out) > 0.0 ? out : Vec3(-out);
+    s.point.threshold = layer(wall.layer_at(to)).puncture;
+  }
+  s.point.at = to;
+  const NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
+  if (track.n == 0 || needle_.length() - track.knots[static_cast<std::size_t>(track.n - 1)].strand >= material_.spacing) lay_knot(wall, s, to);
+}
+
+void NeedleTracks::break_through(const VesselWall& wall, const WallState&, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept {
+  const double push = -t.force.dot(along);
+  if (push < 0.0 || t.start < 0.0) {
+    s.point.kind = PointContact::Kind::within;
+    return;
+  }
+  const double slope = std::min(1.0, std::abs(along.dot(s.point.normal)));
+  s.point.force = push * slope;
+  if (s.point.force < s.point.threshold) return;
+  s.dissipated += 0.5 * push * push / material_.point_stiffness;
+  s.point.kind = PointContact::Kind::within;
+  e.say(s.point.leaving != 0 ? "needle-out" : "puncture", s.point.force);
+  if (s.point.leaving == 0) return;
+  NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
+  lay_knot(wall, s, s.point.at);
+  track.out = 1;
+  track.exit = s.point.at;
+  track.exit_angle = std::asin(slope);
+  track.bite_exit = walk_.bite(wall, s.point.at);
+  s.open = -1;
+  s.point = {};
+}
+
+}  // namespace filum

@@ -1,0 +1,146 @@
+#pragma once
+// The way of needle and thread through tissue: puncture, track, friction, tearing.
+//
+// A track is a curve through material points of the wall (knots), laid down by the needle's point. It does not depend on the wall's
+// nodes. Each knot holds whatever runs through it, needle or thread: a spring across the strand, dry and speed-dependent friction
+// along it (rod_tether.h), and gives the tissue the opposite load.
+//   Puncture  Layer by layer. The point rests on a layer until the normal part of its force reaches the layer's threshold, so that
+//             along the needle the force is F0 / sin(angle to the surface); below the least angle the point slides.
+//   Insertion  F = F_cut + sum over the length inside (f + c v): linear in depth (Okamura, Simone & O'Leary, IEEE TBME 51:1707, 2004).
+//   Bends     Each knot adds mu times its lateral force: summed over a bend this is the capstan.
+//   Sawing    The hole's radius grows by wear x lateral force x length drawn through (Archard).
+//   Tearing   A knot bears at most tear x bite (distance to the cut edge); beyond that it moves through the tissue the way it is pulled,
+//             until its load is what it bears. As the bite shrinks so does that, and the last of it lets go at once.
+// Neglects: cracks ahead of the knot, healing of stretch; a tear leaves the elements whole. Constants are orders of magnitude from
+// clinical.md 4 and 6 (proposals). Tests: needle_track_test; `filum validate` track-*.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "physics/needle.h"
+#include "physics/vessel_wall.h"
+#include "physics/wall_walk.h"
+
+namespace filum {
+
+struct PunctureLayer {
+  double puncture = 5e-3;     // [N], normal force at which the point goes in
+  double cutting = 1e-3;      // [N], at the point while it advances
+  double friction = 5.0;      // [N/m], dry, for each length of needle inside
+  double drag = 50.0;         // [N s/m2], each length and speed
+};
+
+struct TrackMaterial {
+  std::vector<PunctureLayer> layers;  // inner first, as VesselWall::layer_at counts
+  double hold = 400.0;           // [N/m], of a knot across the strand
+  double point_stiffness = 1500.0;  // [N/m], tissue just under the point
+  double least_angle = 0.26;     // [rad], below which the point slides off
+  double thread_share = 0.4;     // friction and drag of thread over those of needle
+  double bend_friction = 0.15;   // [-], mu
+  double tear = 500.0;           // [N/m], force for each length of bite
+  double exit_share = 0.3;       // threshold of the far side, where the tissue is already split, over that of going in
+  double wear = 2e-2;            // [1/N], growth of the hole's radius for each force and length drawn
+  double spacing = 60e-6;        // [m], of knots
+};
+
+/// A material point that holds the strand.
+struct TrackKnot {
+  WallPoint at;
+  double strand = 0.0;   // [m], what is in it: arc on the needle from the swage; negative: thread behind the swage
+  double span = 0.0;     // [m], length of strand that it stands for
+  double lateral = 0.0;  // [N], across the strand, in the last step
+};
+
+inline constexpr int kTrackKnots = 12;
+inline constexpr int kMaxTracks = 40;
+
+struct NeedleTrack {
+  std::int32_t n = 0;
+  std::int32_t out = 0;        // the point has come out
+  std::int32_t ended = 0;      // 1 pulled out backwards, 2 torn out
+  std::int32_t part = 0;
+  std::array<TrackKnot, kTrackKnots> knots;
+  WallPoint entry, exit;
+  double entry_angle = 0.0, exit_angle = 0.0;   // [rad], against the surface
+  double bite_entry = 0.0, bite_exit = 0.0;     // [m]
+  double shallow = 1.0, deep = 0.0;             // depth_at of its knots, least and most
+  double hole = 0.0;                            // [m], radius
+  double torn = 0.0;                            // [m]
+  double peak = 0.0, pull = 0.0;                // [N], largest load of a knot so far; of the thread along it now
+};
+
+/// What the needle's point rests on.
+struct PointContact {
+  enum class Kind : std::int32_t { none, outside, within, boundary };  // within: advancing in open tissue; boundary: at a layer or the far side
+  Kind kind = Kind::none;
+  std::int32_t leaving = 0;    // boundary: the far surface
+  WallPoint at;
+  Vec3 normal = Vec3::UnitZ();  // outward where it rests
+  double threshold = 0.0;      // [N]
+  double force = 0.0;          // [N], normal, in the last step
+};
+
+/// Part of the state.
+struct TrackState {
+  std::int32_t n = 0;
+  std::int32_t open = -1;      // track that the point is in
+  std::array<NeedleTrack, kMaxTracks> tracks;
+  PointContact point;
+  Vec3 point_before = Vec3::Zero();  // [m], of the needle, end of the last step
+  double dissipated = 0.0;     // [J], by friction, cutting and tearing so far
+};
+
+struct TrackEvent {
+  const char* name = "";       // "puncture" (value: normal force), "needle-out", "pulled-back", "tear" (value: force), "torn-out"
+  double value = 0.0;          // [N]
+};
+
+class NeedleTracks {
+ public:
+  NeedleTracks(TrackMaterial material, const NeedleShape& needle, const VesselWall& wall);
+
+  const TrackMaterial& material() const noexcept { return material_; }
+  const WallWalk& walk() const noexcept { return walk_; }
+
+  /// What the tissue holds in this step: added to the tethers of the needle and, from index `on_thread.size()` on, of the thread.
+  void hold(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, const RodState* thread,
+            std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
+  /// After needle and thread have moved: loads on the wall, what slid, what was pierced or torn. Returns the number of events.
+  int follow(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const RodState* thread, double dt,
+             const std::vector<RodTether>& on_needle, const std::vector<RodTether>& on_thread, TrackEvent* events, int room) noexcept;
+
+ private:
+  struct Use {
+    int track, knot, tether;
+    bool needle;
+  };
+  struct Events {
+    TrackEvent* list;
+    int room, n;
+    void say(const char* name, double value) noexcept {
+      if (n < room) list[n++] = {name, value};
+    }
+  };
+  const PunctureLayer& layer(int k) const noexcept { return material_.layers[std::min(static_cast<std::size_t>(k), material_.layers.size() - 1)]; }
+  RodTether tether_of(const VesselWall& wall, const WallState& w, const TrackKnot& k, double arc, const Vec3& along, const Vec3& x, double share) const noexcept;
+  void hold_point(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, std::vector<RodTether>& on_needle) noexcept;
+  void take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt, Events& e) noexcept;
+  void tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, TrackKnot& knot, const Vec3& load, Events& e) noexcept;
+  void take_point(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const std::vector<RodTether>& on_needle, Events& e) noexcept;
+  void rest_on_surface(VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept;
+  void advance(const VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& tip, const Vec3& along) noexcept;
+  void break_through(const VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept;
+  void find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& tip, const Vec3& along) noexcept;
+  void open_track(const VesselWall& wall, const WallState& w, TrackState& s, double angle) noexcept;
+  void lay_knot(const VesselWall& wall, TrackState& s, const WallPoint& at) noexcept;
+  void drop_passed(TrackState& s, Events& e) noexcept;
+
+  TrackMaterial material_;
+  NeedleShape needle_;
+  WallWalk walk_;
+  std::vector<Use> uses_;
+  int point_tether_ = -1;
+};
+
+}  // namespace filum

@@ -1,0 +1,94 @@
+#include "world/vessel_file.h"
+
+#include <numbers>
+
+#include "world/needle_model.h"
+#include "world/vessel_scene.h"
+
+namespace filum {
+namespace {
+
+double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
+  const YamlNode field = file.map(key);
+  field.text("source");
+  field.quantity("uncertainty", unit, Range::not_negative());
+  return field.quantity("value", unit, range);
+}
+
+WallLayer read_layer(const YamlNode& node) {
+  WallLayer l;
+  l.name = node.text("name");
+  l.thickness = node.quantity("thickness", "um", Range::positive());
+  l.law = WallLaw::hooke(node.quantity("young", "kPa", Range::positive()), node.number("poisson", Range::between(0.0, 0.499)));
+  node.text("source");
+  return l;
+}
+
+/// Two flaps that face each other across a straight cut along x.
+VesselMesh read_card(const YamlNode& node, double thickness) {
+  CardShape shape;
+  shape.thickness = thickness;
+  shape.width = node.quantity("width", "mm", Range::positive());
+  shape.depth = node.quantity("depth", "mm", Range::positive());
+  shape.across = node.integer("across", 2, 60);
+  shape.deep = node.integer("deep", 2, 40);
+  const double gap = node.quantity("gap", "mm", Range::not_negative());
+  const Vec3 at = node.vec3("centre", "mm");
+  const VesselMesh flap = make_card(shape);
+  VesselMesh mesh;
+  Pose X;
+  X.p = at - 0.5 * gap * Vec3::UnitY();
+  append(mesh, flap, X);
+  X.p = at + 0.5 * gap * Vec3::UnitY();
+  X.q = Quat(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitZ()));
+  append(mesh, flap, X);
+  return mesh;
+}
+
+}  // namespace
+
+TrackMaterial load_track(const std::string& path) {
+  const YamlNode file = YamlNode::load(path);
+  if (file.text("format") != "filum-track/1") file.refuse("format", "filum-track/1");
+  file.text("title");
+  TrackMaterial m;
+  for (const YamlNode& node : file.items("layers")) {
+    PunctureLayer l;
+    l.puncture = measured(node, "puncture", "mN", Range::positive());
+    l.cutting = measured(node, "cutting", "mN", Range::not_negative());
+    l.friction = measured(node, "friction", "N/m", Range::not_negative());
+    l.drag = measured(node, "drag", "N.s/m2", Range::not_negative());
+    m.layers.push_back(l);
+  }
+  if (m.layers.empty()) file.refuse("layers", "at least one layer");
+  m.hold = measured(file, "hold", "N/m", Range::positive());
+  m.point_stiffness = measured(file, "point_stiffness", "N/m", Range::positive());
+  m.least_angle = measured(file, "least_angle", "deg", Range::not_negative());
+  m.thread_share = measured(file, "thread_share", "-", Range::not_negative());
+  m.bend_friction = measured(file, "bend_friction", "-", Range::not_negative());
+  m.tear = measured(file, "tear", "N/m", Range::positive());
+  m.exit_share = measured(file, "exit_share", "-", Range::between(0.0, 1.0));
+  m.wear = measured(file, "wear", "1/N", Range::not_negative());
+  m.spacing = file.quantity("spacing", "um", Range::positive());
+  file.finish();
+  return m;
+}
+
+void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
+  auto v = std::make_shared<VesselModel>();
+  v->kind = node.choice("kind", {"card"});
+  v->name = node.text("name");
+  for (const YamlNode& layer : node.items("layers")) v->layers.push_back(read_layer(layer));
+  for (const WallLayer& l : v->layers) v->thickness += l.thickness;
+  v->mesh = read_card(node, v->thickness);
+  v->wall.dt = m.step.dt;
+  v->wall.damping = node.quantity("damping", "1/s", Range::not_negative());
+  const std::string file = "models/track/" + node.text("track") + ".yaml";
+  m.sources.push_back(file);
+  v->track = load_track(root + "/" + file);
+  if (v->track.layers.size() != v->layers.size()) node.refuse("track", "as many layers as the tissue has");
+  VesselScene(*v, m.needle->shape).describe(m.description.tissue);
+  m.vessel = std::move(v);
+}
+
+}  // namespace filum

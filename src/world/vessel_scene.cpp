@@ -1,0 +1,122 @@
+#include "world/vessel_scene.h"
+
+#include <algorithm>
+
+#include "base/hash.h"
+
+namespace filum {
+namespace {
+
+PassObservation::State state_of(const NeedleTrack& t) noexcept {
+  if (t.ended == 2) return PassObservation::State::torn;
+  if (t.ended == 1) return PassObservation::State::pulled_out;
+  if (t.out == 0) return PassObservation::State::open;
+  return t.knots[0].strand >= 0.0 || t.knots[static_cast<std::size_t>(t.n - 1)].strand >= 0.0 ? PassObservation::State::needle : PassObservation::State::thread;
+}
+
+std::uint64_t hash_point(const WallPoint& p, std::uint64_t h) noexcept {
+  const std::array<double, 4> row = {static_cast<double>(p.element), p.local.x(), p.local.y(), p.local.z()};
+  return hash_bytes(row.data(), sizeof(row), h);
+}
+
+}  // namespace
+
+VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle)
+    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), first_(wall_.first_state()) {
+  wall_.settle(first_, 500);
+  wall_.refit(first_);
+}
+
+VesselState VesselScene::start(const Vec3& point) const {
+  VesselState s;
+  s.wall = first_;
+  s.tracks.point_before = point;
+  return s;
+}
+
+void VesselScene::describe(TissueDescription& d) const {
+  d.name = model_.name;
+  d.kind = model_.kind;
+  d.thickness = model_.thickness;
+  d.cut_along = model_.cut_along;
+  d.rest = model_.mesh.nodes;
+  for (const Triangle& t : wall_.triangles()) d.triangles.push_back({t[0], t[1], t[2]});
+}
+
+void VesselScene::size_observation(Observation& o) const {
+  o.tissue.n = model_.mesh.n_nodes();
+  o.tissue.positions = model_.mesh.nodes;
+}
+
+void VesselScene::hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle,
+                       std::vector<RodTether>& on_thread) noexcept {
+  tracks_.hold(wall_, s.wall, s.tracks, X_WN, &thread, on_needle, on_thread);
+}
+
+void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
+                       const std::vector<RodTether>& on_thread, Observation& o) noexcept {
+  std::array<TrackEvent, 8> events;
+  wall_.clear_loads();
+  const int n = tracks_.follow(wall_, s.wall, s.tracks, X_WN, &thread, model_.wall.dt, on_needle, on_thread, events.data(), static_cast<int>(events.size()));
+  for (int k = 0; k < n && o.n_events < static_cast<int>(o.events.size()); ++k)
+    o.events[static_cast<std::size_t>(o.n_events++)] = {events[static_cast<std::size_t>(k)].name, -1, events[static_cast<std::size_t>(k)].value, "N"};
+  const WallSummary summary = wall_.step(s.wall);
+  if (!summary.sound && o.n_events < static_cast<int>(o.events.size()))
+    o.events[static_cast<std::size_t>(o.n_events++)] = {"solver-trouble", -1, summary.residual, "N"};
+  wall_.refit(s.wall);
+}
+
+void VesselScene::observe(const VesselState& s, const RodState& thread, Observation& o) const noexcept {
+  TissueObservation& t = o.tissue;
+  t.positions = s.wall.x;
+  t.n_passes = s.tracks.n;
+  t.point_force = s.tracks.point.force;
+  const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
+  for (int k = 0; k < s.tracks.n; ++k) {
+    const NeedleTrack& track = s.tracks.tracks[static_cast<std::size_t>(k)];
+    PassObservation& p = t.passes[static_cast<std::size_t>(k)];
+    p.state = state_of(track);
+    p.out = track.out != 0;
+    p.side = track.part;
+    const WallPoint& in = track.n > 0 ? track.knots[0].at : track.entry;
+    p.entry_W = wall_.position(s.wall, in);
+    p.entry_rest = tracks_.walk().at_rest(wall_, track.entry);
+    p.entry_angle = track.entry_angle;
+    p.bite_entry = track.bite_entry;
+    if (p.out) {
+      p.exit_W = wall_.position(s.wall, track.n > 0 ? track.knots[static_cast<std::size_t>(track.n - 1)].at : track.exit);
+      p.exit_rest = tracks_.walk().at_rest(wall_, track.exit);
+      p.exit_angle = track.exit_angle;
+      p.bite_exit = track.bite_exit;
+    }
+    p.depth_share = std::max(0.0, track.deep - track.shallow);
+    p.arc = track.n > 0 && track.knots[0].strand < 0.0 ? whole + track.knots[0].strand : -1.0;
+    p.tension = track.pull;
+    p.peak_force = track.peak;
+    p.hole = track.hole;
+    p.torn = track.torn;
+  }
+}
+
+std::uint64_t hash_vessel(const VesselState& s) noexcept {
+  std::uint64_t h = hash_bytes(s.wall.x.data(), sizeof(double) * static_cast<std::size_t>(s.wall.x.size()));
+  h = hash_bytes(s.wall.v.data(), sizeof(double) * static_cast<std::size_t>(s.wall.v.size()), h);
+  h = hash_bytes(s.wall.soundness.data(), sizeof(double) * s.wall.soundness.size(), h);
+  const TrackState& t = s.tracks;
+  for (int i = 0; i < t.n; ++i) {
+    const NeedleTrack& track = t.tracks[static_cast<std::size_t>(i)];
+    const std::array<double, 9> row = {static_cast<double>(track.n), static_cast<double>(track.out), static_cast<double>(track.ended), track.hole,
+                                       track.torn, track.peak, track.pull, track.shallow, track.deep};
+    h = hash_bytes(row.data(), sizeof(row), h);
+    for (int k = 0; k < track.n; ++k) {
+      const TrackKnot& knot = track.knots[static_cast<std::size_t>(k)];
+      const std::array<double, 3> values = {knot.strand, knot.span, knot.lateral};
+      h = hash_bytes(values.data(), sizeof(values), hash_point(knot.at, h));
+    }
+  }
+  const std::array<double, 7> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,
+                                     t.point_before.x(), t.point_before.y(), t.point_before.z()};
+  return hash_point(t.point.at, hash_bytes(row.data(), sizeof(row), h));
+}
+
+}  // namespace filum

@@ -1,0 +1,36 @@
+#pragma once
+// The tissue of a scene and the needle's and thread's ways through it: what it holds them by, what they do to it, its own step.
+
+#include "physics/implicit_rod.h"
+#include "physics/needle.h"
+#include "world/observation.h"
+#include "world/vessel_model.h"
+
+namespace filum {
+
+class VesselScene {
+ public:
+  VesselScene(const VesselModel& model, const NeedleShape& needle);
+
+  VesselState start(const Vec3& point) const;
+  void describe(TissueDescription& d) const;
+  void size_observation(Observation& o) const;
+
+  void hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
+  /// After needle and thread have moved: loads, punctures and tears, then the tissue's own step.
+  void step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
+            const std::vector<RodTether>& on_thread, Observation& o) noexcept;
+  void observe(const VesselState& s, const RodState& thread, Observation& o) const noexcept;
+  /// After a state was restored.
+  void match(const VesselState& s) noexcept { wall_.refit(s.wall); }
+
+ private:
+  const VesselModel& model_;
+  VesselWall wall_;
+  NeedleTracks tracks_;
+  WallState first_;
+};
+
+std::uint64_t hash_vessel(const VesselState& s) noexcept;
+
+}  // namespace filum
