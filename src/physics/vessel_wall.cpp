@@ -76,7 +76,7 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   longest_move_ = 0.0;
   for (const WallLayer& l : layers) longest_move_ += l.thickness;
   loads_.resize(kMostLoads);
-  for (Points* p : {&x_, &target_, &residual_, &trial_x_, &trial_residual_}) p->setZero(3, n);
+  for (Points* p : {&x_, &target_, &residual_, &trial_x_, &trial_residual_, &push_, &trial_push_}) p->setZero(3, n);
   turn_.resize(static_cast<std::size_t>(n));
   direction_ = work_ = Vector::Zero(3 * n);
   turned_f_ = Eigen::VectorXf::Zero(3 * n);
@@ -138,7 +138,7 @@ void VesselWall::guess(const WallState& state) noexcept {
   }
 }
 
-// Potential of everything but the work of pressure at the open rims, which has none.
+// The potential is that of everything but pressure, whose work is reckoned along the way that advance() takes.
 double VesselWall::evaluate(const WallState& state) noexcept {
   Points& r = trial_residual_;
   const Points& x = trial_x_;
@@ -149,7 +149,11 @@ double VesselWall::evaluate(const WallState& state) noexcept {
     r.col(i) = inertia_[i] * behind;
   }
   energy += elements_.add_forces(x, state.soundness, r);
-  energy -= add_pressure_forces(mesh_, pressure_, x, r);
+  if (pressed_) {
+    trial_push_.setZero();
+    add_pressure_forces(mesh_, pressure_, x, trial_push_);
+    r += trial_push_;
+  }
   for (int k = 0; k < n_loads_; ++k) {
     const Load& l = loads_[static_cast<std::size_t>(k)];
     Vec3 at = -l.at;
@@ -197,6 +201,7 @@ bool VesselWall::advance(const WallState& state) noexcept {
     trial_x_ = x_ + step * direction_.reshaped(3, x_.cols());
     trial_energy_ = evaluate(state);
     if (std::isfinite(trial_energy_)) {
+      if (pressed_) trial_energy_ -= 0.5 * step * (flat(push_) + flat(trial_push_)).dot(direction_);
       if (trial_energy_ <= energy_ - kDecrease * step * slope + noise || trial_residual_.norm() < kBetter * before) return true;
       const double best = 0.5 * slope * step / (slope + (trial_energy_ - energy_) / step);  // of the parabola
       step *= std::clamp(best / step, 0.1, 0.5);
@@ -223,6 +228,7 @@ WallSummary VesselWall::step(WallState& state) noexcept {
   WallSummary summary;
   n_pairs_ = 0;
   guess(state);
+  pressed_ = std::any_of(pressure_.begin(), pressure_.end(), [](double p) { return p != 0.0; });
   trial_x_ = x_;
   energy_ = evaluate(state);
   if (!std::isfinite(energy_) || trial_residual_.colwise().norm().maxCoeff() > kViolent) {  // is it better to start from where it is?
@@ -241,6 +247,7 @@ WallSummary VesselWall::step(WallState& state) noexcept {
   const bool sound = std::isfinite(energy_);
   find_frames(x_);
   residual_ = trial_residual_;
+  push_ = trial_push_;
   while (sound) {
     summary.residual = residual_.colwise().norm().maxCoeff();
     summary.converged = summary.residual <= options_.tolerance;
@@ -249,7 +256,8 @@ WallSummary VesselWall::step(WallState& state) noexcept {
     if (!advance(state)) break;
     ++summary.iterations;
     add_pair();
-    energy_ = trial_energy_;
+    energy_ = trial_energy_;  // less work of pressure: only differences from here on matter
+    push_.swap(trial_push_);
     x_.swap(trial_x_);
     residual_.swap(trial_residual_);
   }

@@ -138,7 +138,8 @@ class VesselWall {
   std::vector<Load> loads_;
   int n_loads_ = 0;
   // scratch of a step
-  Points x_, target_, residual_, trial_x_, trial_residual_;
+  Points x_, target_, residual_, trial_x_, trial_residual_, push_, trial_push_;  // push: of pressure
+  bool pressed_ = false;
   double energy_ = 0.0, trial_energy_ = 0.0;
   std::vector<Mat3> turn_;
   Eigen::VectorXd direction_, work_;

@@ -13,7 +13,7 @@ WallElements::WallElements(const VesselMesh& mesh, const std::vector<WallLayer>&
     : n_nodes_(mesh.n_nodes()), single_precision_(single_precision), layers_(layers), nodes_of_(mesh.elements), rest_(mesh.stress_free) {
   for (const WallLayer& l : layers_) constants_.emplace_back(l.law);
   row_of_.assign(nodes_of_.size(), -1);
-  for (const Corners& c : rest_) volume_.push_back(volume(c));
+  volume_.assign(nodes_of_.size(), 0.0);
   for (std::size_t e = 0; e < nodes_of_.size(); ++e) {
     const auto found = std::find_if(rows_.begin(), rows_.end(), [&](const KernelRow& r) { return r.span == mesh.span[e]; });
     row_of_[e] = static_cast<int>(found - rows_.begin());
@@ -88,6 +88,7 @@ void WallElements::fill_lane(WallKernel<N>& kernel, typename WallKernel<N>::Pack
           for (int m = 0; m < 3; ++m) point->geometry.fibre[f][m].set(lane, v.geometry.fibre[f][m]);
         point->geometry.inverse_root.set(lane, v.geometry.inverse_root);
         point->weight.set(lane, real ? v.weight : 0.0);
+        if (real) volume_[e] += v.weight;
         ++point;
       }
   pack.volume.set(lane, volume_[e]);

@@ -2,11 +2,14 @@
 // The element of the vessel wall: eight nodes, 2 x 2 Gauss points in the wall's plane, and through it one or two for each layer
 // that the element meets. Energy and forces come from covariant components of C, as in solid-shells:
 //   C_13, C_23  at the middles of the sides, interpolated (Dvorkin & Bathe, Eng. Comput. 1:77, 1984): no transverse shear locking
-//   C_33        at the four edges through the wall, interpolated (Betsch & Stein, Commun. Num. Meth. 11:899, 1995): none by curvature
+//   C_33        of the middle, and linear in how it changes over the element. With the squares of that change (Betsch & Stein, Commun.
+//               Num. Meth. 11:899, 1995, keep them) a radial pressure above about mu (height/length)^2 folds elements in zigzags,
+//               because the shear that would hold them has been interpolated away
 //   volume      J of points only by Lame's share that plane stress leaves to them (hyperelastic.h); the rest of lambda by the
-//               element's own volume v: (lambda - lambda_point)/2 V (v/V - 1)^2 (mean dilatation: Nagtegaal, Parks & Rice, CMAME 4:153,
+//               element's mean J: (lambda - lambda_point)/2 V (mean J - 1)^2 (mean dilatation: Nagtegaal, Parks & Rice, CMAME 4:153,
 //               1974): no volume locking, and one element through the wall bends as an incompressible plate does.
 // Symbols: x(xi,eta,zeta) = sum over the eight products of coordinates of c_m, c by a Walsh-Hadamard transform of the corners.
+// C is blind to mirror images: an element whose signed volume falls below half pushes back by a term that is zero otherwise.
 // Exact for constant strain in elements whose edges through the wall are parallel. Elements are computed in packs (vessel_wall_kernel.h).
 // Neglects: locking of long thin elements that bend in the wall's own plane. Test: vessel_wall_element_test.
 
@@ -40,14 +43,12 @@ class WallElements {
   using Stiffness = Eigen::Matrix<double, 24, 24>;
   /// d(-force)/dx [N/m] of one element, corner by corner. `taut`: fibres count as in tension where they are not.
   Stiffness stiffness(int element, const Points& x, bool taut = false) const noexcept;
-  /// Volume now, with its gradient by corners and the second derivatives if asked for. [m3]
-  static double volume(const Corners& x, Eigen::Matrix<double, 24, 1>* gradient = nullptr, Stiffness* second = nullptr) noexcept;
   /// Stress-free volume. [m3]
   double volume(int element) const noexcept { return volume_[static_cast<std::size_t>(element)]; }
 
   struct Strain {
     double around = 1.0, along = 1.0, through = 1.0;  // stretches at the middle of an element
-    double J = 1.0;                                   // of the element's volume
+    double J = 1.0;                                   // at the middle
   };
   Strain strain(int element, const Points& x) const noexcept;
 
@@ -63,6 +64,9 @@ class WallElements {
     double weight;
   };
 
+  template <class Use>
+  void each_point(std::size_t e, const Corners& corners, const Use& use) const noexcept;
+  double mean_pressure(std::size_t e, const Corners& corners) const noexcept;  // [Pa]
   void add_row(const std::array<double, 2>& span);
   template <class N>
   void pack_row(int row, WallKernel<N>& kernel);

@@ -15,6 +15,7 @@ namespace filum {
 
 inline constexpr double kGauss = 0.57735026918962576451;
 inline constexpr double kInsideOut = 0.02;  // share of its volume below which an element or a point of it counts as turned inside out
+inline constexpr double kCrushed = 0.5;     // share of its signed volume below which an element pushes back, whatever its C says
 inline constexpr std::size_t kMostStations = 8;
 
 struct WallStation {     // Gauss points of one zeta
@@ -86,8 +87,14 @@ class WallKernel {
   /// Volume of the element by its eight coefficients, and its gradient times `scale` added to f.
   static S volume_of(const Vec* c) noexcept;
   static void press(const Vec* c, const S& scale, Vec* f) noexcept;
-  /// Points of all stations: adds to energy and forces, lowers `least` to the least J.
-  static void stretch(const Point* point, const KernelRow& row, const std::vector<LawConstants>& laws, const Vec* c, Vec* f, S& energy, S& least) noexcept;
+  struct PointState {
+    S C[6], dJ[6], J;
+  };
+  /// Volume by the points' J; lowers `least` to the least J.
+  static S measure(const Point* point, const KernelRow& row, const Vec* c, PointState* s, S& least) noexcept;
+  /// Adds the points' forces, with `pressure` on their J; returns their energy.
+  static S stretch(const Point* point, const KernelRow& row, const std::vector<LawConstants>& laws, const Vec* c, const PointState* s, const S& pressure,
+                   Vec* f) noexcept;
   static double scatter(const Pack& pack, Vec* f, const S& energy, const S& upright, const std::vector<double>& soundness, Points& force) noexcept;
 };
 
@@ -97,10 +104,10 @@ void WallKernel<N>::Assumed::measure(const Vec* c) noexcept {
   a1 = dot(c[1], c[6]) + dot(c[3], c[4]);
   b0 = dot(c[2], c[4]) + dot(c[3], c[5]);
   b1 = dot(c[2], c[5]) + dot(c[3], c[4]);
-  r0 = dot(c[4], c[4]) + dot(c[5], c[5]) + dot(c[6], c[6]) + dot(c[7], c[7]);
-  r1 = 2.0 * (dot(c[4], c[5]) + dot(c[6], c[7]));
-  r2 = 2.0 * (dot(c[4], c[6]) + dot(c[5], c[7]));
-  r3 = 2.0 * (dot(c[4], c[7]) + dot(c[5], c[6]));
+  r0 = dot(c[4], c[4]);
+  r1 = 2.0 * dot(c[4], c[5]);
+  r2 = 2.0 * dot(c[4], c[6]);
+  r3 = 2.0 * dot(c[4], c[7]);
 }
 
 template <class N>
@@ -122,9 +129,9 @@ void WallKernel<N>::Assumed::spread(const Vec* c, Vec* f) const noexcept {
   f[2].add(b0 * c[4] + b1 * c[5]);
   f[3].add(a0 * c[6] + a1 * c[4] + b0 * c[5] + b1 * c[4]);
   f[4].add(a0 * c[1] + a1 * c[3] + b0 * c[2] + b1 * c[3] + s0 * c[4] + s1 * c[5] + s2 * c[6] + s3 * c[7]);
-  f[5].add(b0 * c[3] + b1 * c[2] + s0 * c[5] + s1 * c[4] + s2 * c[7] + s3 * c[6]);
-  f[6].add(a0 * c[3] + a1 * c[1] + s0 * c[6] + s1 * c[7] + s2 * c[4] + s3 * c[5]);
-  f[7].add(s0 * c[7] + s1 * c[6] + s2 * c[5] + s3 * c[4]);
+  f[5].add(b0 * c[3] + b1 * c[2] + s1 * c[4]);
+  f[6].add(a0 * c[3] + a1 * c[1] + s2 * c[4]);
+  f[7].add(s3 * c[4]);
 }
 
 template <class N>
@@ -191,36 +198,53 @@ void WallKernel<N>::press(const Vec* c, const S& scale, Vec* f) noexcept {
 }
 
 template <class N>
-void WallKernel<N>::stretch(const Point* point, const KernelRow& row, const std::vector<LawConstants>& laws, const Vec* c, Vec* f, S& energy,
-                            S& least) noexcept {
-  Assumed assumed, on_assumed = {};
+typename WallKernel<N>::S WallKernel<N>::measure(const Point* point, const KernelRow& row, const Vec* c, PointState* s, S& least) noexcept {
+  Assumed assumed;
   assumed.measure(c);
+  S filled(0.0);
+  Tangents t;
+  for (const WallStation& station : row.stations) {
+    t.measure(c, station.zeta);
+    for (int q = 0; q < 4; ++q, ++s, ++point) {
+      const int i = q & 1, j = q >> 1;
+      const double xi = i ? kGauss : -kGauss, eta = j ? kGauss : -kGauss;
+      s->C[0] = dot(t.around[j], t.around[j]);
+      s->C[1] = dot(t.along[i], t.along[i]);
+      s->C[2] = assumed.r0 + xi * assumed.r1 + eta * assumed.r2 + (xi * eta) * assumed.r3;
+      s->C[3] = dot(t.around[j], t.along[i]);
+      s->C[4] = assumed.b0 + xi * assumed.b1;
+      s->C[5] = assumed.a0 + eta * assumed.a1;
+      s->J = volume_ratio(point->geometry, s->C, s->dJ);
+      filled += point->weight * s->J;
+      least = least_of(least, s->J);
+    }
+  }
+  return filled;
+}
+
+template <class N>
+typename WallKernel<N>::S WallKernel<N>::stretch(const Point* point, const KernelRow& row, const std::vector<LawConstants>& laws, const Vec* c,
+                                                 const PointState* s, const S& pressure, Vec* f) noexcept {
+  Assumed on_assumed = {};
+  S energy(0.0);
   Tangents t;
   for (const WallStation& station : row.stations) {
     const LawConstants& law = laws[static_cast<std::size_t>(station.layer)];
     t.measure(c, station.zeta);
     Tangents on = {};
-    for (int q = 0; q < 4; ++q, ++point) {
+    for (int q = 0; q < 4; ++q, ++s, ++point) {
       const int i = q & 1, j = q >> 1;
-      const double xi = i ? kGauss : -kGauss, eta = j ? kGauss : -kGauss;
-      const S C[6] = {dot(t.around[j], t.around[j]),
-                      dot(t.along[i], t.along[i]),
-                      assumed.r0 + xi * assumed.r1 + eta * assumed.r2 + (xi * eta) * assumed.r3,
-                      dot(t.around[j], t.along[i]),
-                      assumed.b0 + xi * assumed.b1,
-                      assumed.a0 + eta * assumed.a1};
-      S T[6], dJ[6];
-      const S J = volume_ratio(point->geometry, C, dJ);
-      least = least_of(least, J);
-      energy += point->weight * law_energy(law, point->geometry, C, J, dJ, T);
-      for (S& v : T) v = point->weight * v;
-      on_assumed.add_point(T, xi, eta);
+      S T[6];
+      energy += point->weight * law_energy(law, point->geometry, s->C, s->J, s->dJ, T);
+      for (int m = 0; m < 6; ++m) T[m] = point->weight * (T[m] + pressure * s->dJ[m]);
+      on_assumed.add_point(T, i ? kGauss : -kGauss, j ? kGauss : -kGauss);
       on.around[j].add((2.0 * T[0]) * t.around[j] + T[3] * t.along[i]);
       on.along[i].add((2.0 * T[1]) * t.along[i] + T[3] * t.around[j]);
     }
     on.spread(station.zeta, f);
   }
   on_assumed.spread(c, f);
+  return energy;
 }
 
 template <class N>
@@ -256,12 +280,14 @@ double WallKernel<N>::forces(const Pack& pack, const KernelRow& row, const std::
                              const std::vector<double>& soundness, Points& force) const noexcept {
   Vec c[8], f[8] = {};
   gather(pack, x, c);
-  const S filled = volume_of(c) / pack.volume;
-  const S pressure = row.lambda_mean * (filled - 1.0);
-  S energy = 0.5 * pressure * (filled - 1.0) * pack.volume;
-  press(c, pressure, f);
-  S least = filled;
-  stretch(&points[pack.first_point], row, laws, c, f, energy, least);
+  const Point* const first = &points[pack.first_point];
+  PointState states[4 * kMostStations];
+  const S signed_volume = volume_of(c) / pack.volume;
+  S least = signed_volume;
+  const S change = measure(first, row, c, states, least) / pack.volume - 1.0;
+  const S pressure = row.lambda_mean * change, crushed = positive_part(S(kCrushed) - signed_volume);
+  press(c, S(-row.lambda_mean) * crushed, f);
+  const S energy = 0.5 * row.lambda_mean * pack.volume * (change * change + crushed * crushed) + stretch(first, row, laws, c, states, pressure, f);
   return scatter(pack, f, energy, least, soundness, force);
 }
 

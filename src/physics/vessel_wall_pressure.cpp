@@ -37,19 +37,16 @@ Mat3 cross_matrix(const Vec3& a) noexcept {
 }  // namespace
 
 // An inner face turns about the normal that points out of the tissue, into the lumen: the push is against it.
-double add_pressure_forces(const VesselMesh& mesh, std::span<const double> pressure, const Points& x, Points& force) noexcept {
-  double work = 0.0;
+void add_pressure_forces(const VesselMesh& mesh, std::span<const double> pressure, const Points& x, Points& force) noexcept {
   for (const WallFace& f : mesh.faces) {
     const double p = pressure[static_cast<std::size_t>(mesh.part[static_cast<std::size_t>(f.element)])];
     if (f.surface != WallSurface::inner || p == 0.0) continue;
     const Quad q = gather(mesh, f, x);
     Quad push = Quad::Zero();
     each_point([&](const QuadPoint& g) { push -= p * Vec3(q * g.ds).cross(Vec3(q * g.dt)) * g.n.transpose(); });
-    work += push.cwiseProduct(q).sum() / 3.0;
     for (int c = 0; c < 4; ++c)
       force.col(mesh.elements[static_cast<std::size_t>(f.element)][static_cast<std::size_t>(f.corner[static_cast<std::size_t>(c)])]) += push.col(c);
   }
-  return work;
 }
 
 Eigen::Matrix<double, 12, 12> pressure_stiffness(const VesselMesh& mesh, const WallFace& face, double p, const Points& x) noexcept {

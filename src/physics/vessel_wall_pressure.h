@@ -10,9 +10,8 @@
 
 namespace filum {
 
-/// Adds the forces [N] of `pressure` [Pa] of each part; returns p times the volume between the inner faces and the origin [J], whose
-/// gradient they are but for the rims. Allocates nothing.
-double add_pressure_forces(const VesselMesh& mesh, std::span<const double> pressure, const Points& x, Points& force) noexcept;
+/// Adds the forces [N] of `pressure` [Pa] of each part. Allocates nothing.
+void add_pressure_forces(const VesselMesh& mesh, std::span<const double> pressure, const Points& x, Points& force) noexcept;
 
 /// -d(force)/dx of one face [N/m] under `pressure`: 12 x 12, corner by corner of the face; not symmetric at the rims.
 Eigen::Matrix<double, 12, 12> pressure_stiffness(const VesselMesh& mesh, const WallFace& face, double pressure, const Points& x) noexcept;

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <cmath>
+#include <limits>
 
 #include "physics/vessel_wall_pressure.h"
 
@@ -10,14 +11,23 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// Unbalanced force; false if an element is inside out.
-bool unbalanced(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, const Points& x, Points& r) {
-  const std::vector<double> sound(static_cast<std::size_t>(mesh.n_elements()), 1.0);
-  r = load.force.cols() > 0 ? load.force : Points(Points::Zero(3, x.cols()));
-  const double energy = elements.add_forces(x, sound, r);
-  if (!load.pressure.empty()) add_pressure_forces(mesh, load.pressure, x, r);
-  return std::isfinite(energy);
-}
+/// Unbalanced force, pressure's part of it, and the energy of the elements and of dead loads [J]; infinite if an element is inside out.
+struct Balance {
+  Points force, push;
+  double energy = 0.0;
+  Balance(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, const Points& x)
+      : force(Points::Zero(3, x.cols())), push(Points::Zero(3, x.cols())) {
+    const std::vector<double> sound(static_cast<std::size_t>(mesh.n_elements()), 1.0);
+    energy = elements.add_forces(x, sound, force);
+    if (!load.pressure.empty()) add_pressure_forces(mesh, load.pressure, x, push);
+    force += push;
+    if (load.force.cols() > 0) {
+      energy -= load.force.cwiseProduct(x).sum();
+      force += load.force;
+    }
+    if (!force.allFinite()) energy = std::numeric_limits<double>::infinity();
+  }
+};
 
 void add_block(const std::vector<char>& fixed, int i, int j, const Mat3& k, std::vector<Eigen::Triplet<double>>& list) {
   for (int r = 0; r < 3; ++r)
@@ -60,41 +70,53 @@ double largest_free(const std::vector<char>& fixed, const Points& r) {
   return most;
 }
 
+/// A shift of the diagonal for which the matrix is positive definite: none if it is, else the least of a growing series.
+bool factor(const Sparse& A, Eigen::SimplicialLDLT<Sparse>& solver) {
+  double shift = 0.0;
+  for (int k = 0; k < 12; ++k) {
+    solver.setShift(shift);
+    solver.factorize(A);
+    if (solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 0.0) return true;
+    shift = k == 0 ? 1e-4 * A.diagonal().mean() : 5.0 * shift;
+  }
+  return false;
+}
+
 }  // namespace
 
 Points reactions(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, const Points& x) {
-  Points r;
-  unbalanced(mesh, elements, load, x, r);
-  return -r;
+  return -Balance(mesh, elements, load, x).force;
 }
 
 StaticSummary solve_static(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, Points& x, double tolerance,
                            int max_iterations) {
   StaticSummary s;
-  Points r, trial, r_trial;
-  if (!unbalanced(mesh, elements, load, x, r)) return s;
-  s.residual = largest_free(load.fixed, r);
+  Balance now(mesh, elements, load, x);
+  if (!std::isfinite(now.energy)) return s;
+  s.residual = largest_free(load.fixed, now.force);
   Eigen::SimplicialLDLT<Sparse> solver;
   for (; s.iterations < max_iterations && s.residual > tolerance; ++s.iterations) {
     const Sparse A = assemble(mesh, elements, load, x);
     if (s.iterations == 0) solver.analyzePattern(A);
-    solver.factorize(A);
-    if (solver.info() != Eigen::Success) return s;
-    Eigen::VectorXd b = r.reshaped();
+    if (!factor(A, solver)) return s;
+    Eigen::VectorXd b = now.force.reshaped();
     for (int i = 0; i < b.size(); ++i)
       if (load.fixed[static_cast<std::size_t>(i)]) b[i] = 0.0;
     const Eigen::VectorXd d = solver.solve(b);
-    double step = 1.0, best = -1.0;
-    for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
-      trial = x + step * d.reshaped(3, x.cols());
-      if (!unbalanced(mesh, elements, load, trial, r_trial)) continue;
-      best = largest_free(load.fixed, r_trial);
-      if (best < 2.0 * s.residual || best < tolerance) break;
+    bool better = false;
+    double step = 1.0;
+    for (int halving = 0; halving < 25 && !better; ++halving, step *= 0.5) {
+      const Points move = step * d.reshaped(3, x.cols());
+      Balance trial(mesh, elements, load, x + move);
+      const double work = 0.5 * (now.push + trial.push).cwiseProduct(move).sum();  // of the pressure on the way
+      const double residual = largest_free(load.fixed, trial.force);
+      better = std::isfinite(trial.energy) && (trial.energy - work <= now.energy - 1e-4 * step * b.dot(d) || residual < 0.5 * s.residual);
+      if (!better) continue;
+      x += move;
+      now = std::move(trial);
+      s.residual = residual;
     }
-    if (best < 0.0) return s;
-    x = trial;
-    r = r_trial;
-    s.residual = best;
+    if (!better) break;
   }
   s.converged = s.residual <= tolerance;
   return s;

@@ -1,6 +1,6 @@
 #pragma once
 // Equilibrium of a wall under dead and follower loads: Newton's method with the exact matrix of the elements (follower pressure
-// symmetrised), sparse LDL^T, and halved steps while they turn elements inside out or make the residual grow. For validation and for
+// symmetrised), sparse LDL^T with a shifted diagonal where it is indefinite, steps halved until the potential falls. For validation and for
 // scenes at load; the moving wall is vessel_wall.h. Test: vessel_wall_static_test.
 
 #include <vector>

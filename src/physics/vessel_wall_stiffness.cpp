@@ -28,12 +28,6 @@ Corners gather(const std::array<int, 8>& nodes, const Points& x) noexcept {
   return c;
 }
 
-Mat3 cross_matrix(const Vec3& a) noexcept {
-  Mat3 m;
-  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return m;
-}
-
 using Gradients = Eigen::Matrix<double, 24, 6>;
 
 Gradients gradients(const CovariantForms& forms, const Corners& x) noexcept {
@@ -69,82 +63,67 @@ CovariantForms covariant_forms(const Vec3& local) noexcept {
   q[0] = sym(d.col(0), d.col(0));
   q[1] = sym(d.col(1), d.col(1));
   q[3] = sym(d.col(0), d.col(1));
-  q[2].setZero();
   q[4].setZero();
   q[5].setZero();
   for (const double s : {-1.0, 1.0}) {
     const auto side = product_derivatives(Vec3(0, s, 0)), front = product_derivatives(Vec3(s, 0, 0));
     q[5] += 0.5 * (1.0 + s * local.y()) * sym(side.col(0), side.col(2));
     q[4] += 0.5 * (1.0 + s * local.x()) * sym(front.col(1), front.col(2));
-    for (const double t : {-1.0, 1.0}) {
-      const Eight through = product_derivatives(Vec3(s, t, 0)).col(2);
-      q[2] += 0.25 * (1.0 + s * local.x()) * (1.0 + t * local.y()) * through * through.transpose();
-    }
   }
+  const Eight middle = Eight::Unit(4), sides = product_derivatives(Vec3(local.x(), local.y(), 0)).col(2) - middle;
+  q[2] = middle * middle.transpose() + 2.0 * sym(middle, sides);
   for (EightEight& form : q) form = (P * form * P.transpose()).eval();
   return q;
 }
 
-double WallElements::volume(const Corners& x, Eigen::Matrix<double, 24, 1>* gradient, Stiffness* second) noexcept {
-  static const EightEight P = corners_to_products();
-  const Corners c = x * P;
-  const auto at = [&](int m) { return Vec3(c.col(m)); };
-  double v = 0.0;
-  Corners g = Corners::Zero();
-  Stiffness H = Stiffness::Zero();  // by products, then by corners
-  for (const VolumeTerm& t : kVolumeTerms) {
-    v += t.weight * at(t.i).dot(at(t.j).cross(at(t.k)));
-    const std::array<int, 3> turn = {t.i, t.j, t.k};
-    for (std::size_t r = 0; r < 3; ++r) {
-      const int i = turn[r], j = turn[(r + 1) % 3], k = turn[(r + 2) % 3];
-      g.col(i) += t.weight * at(j).cross(at(k));
-      H.block<3, 3>(3 * i, 3 * j) -= t.weight * cross_matrix(at(k));
-      H.block<3, 3>(3 * i, 3 * k) += t.weight * cross_matrix(at(j));
-    }
-  }
-  if (gradient) *gradient = Corners(g * P.transpose()).reshaped();
-  if (!second) return v;
-  Eigen::Matrix<double, 24, 24> spread = Stiffness::Zero();
-  for (int a = 0; a < 8; ++a)
-    for (int m = 0; m < 8; ++m) spread.block<3, 3>(3 * a, 3 * m).diagonal().setConstant(P(a, m));
-  *second = spread * H * spread.transpose();
-  return v;
-}
-
-WallElements::Stiffness WallElements::stiffness(int element, const Points& x, bool taut) const noexcept {
-  const auto e = static_cast<std::size_t>(element);
-  const KernelRow& row = rows_[static_cast<std::size_t>(row_of_[e])];
-  const Corners corners = gather(nodes_of_[e], x);
-  Eigen::Matrix<double, 24, 1> swelling;
-  Stiffness bent;
-  const double pressure = row.lambda_mean * (volume(corners, &swelling, &bent) / volume_[e] - 1.0);
-  Stiffness K = row.lambda_mean / volume_[e] * swelling * swelling.transpose() + pressure * bent;
-  for (const WallStation& s : row.stations)
+/// Calls use(law, forms, C, weight and geometry, J, dJ) at every Gauss point of an element.
+template <class Use>
+void WallElements::each_point(std::size_t e, const Corners& corners, const Use& use) const noexcept {
+  for (const WallStation& s : rows_[static_cast<std::size_t>(row_of_[e])].stations)
     for (const double eta : {-kGauss, kGauss})
       for (const double xi : {-kGauss, kGauss}) {
         const CovariantForms forms = covariant_forms(Vec3(xi, eta, s.zeta));
         const Six C = covariant(forms, corners);
         const Scalars p = scalars(rest_[e], Vec3(xi, eta, s.zeta), s.share, layers_[static_cast<std::size_t>(s.layer)].law);
-        const LawConstants& law = constants_[static_cast<std::size_t>(s.layer)];
-        Six dJ, T;
+        Six dJ;
         const double J = volume_ratio(p.geometry, C.data(), dJ.data());
-        law_energy(law, p.geometry, C.data(), J, dJ.data(), T.data());
-        const Gradients B = gradients(forms, corners);
-        K.noalias() += p.weight * B * law_tangent(law, p.geometry, C, taut) * B.transpose();
-        EightEight geometric = EightEight::Zero();
-        for (std::size_t m = 0; m < 6; ++m) geometric += 2.0 * p.weight * T[static_cast<int>(m)] * forms[m];
-        for (int a = 0; a < 8; ++a)
-          for (int b = 0; b < 8; ++b) K.block<3, 3>(3 * a, 3 * b).diagonal().array() += geometric(a, b);
+        use(constants_[static_cast<std::size_t>(s.layer)], forms, C, p, J, dJ);
       }
-  return K;
+}
+
+double WallElements::mean_pressure(std::size_t e, const Corners& corners) const noexcept {
+  double filled = 0.0;
+  each_point(e, corners, [&](const LawConstants&, const CovariantForms&, const Six&, const Scalars& p, double J, const Six&) { filled += p.weight * J; });
+  return rows_[static_cast<std::size_t>(row_of_[e])].lambda_mean * (filled / volume_[e] - 1.0);
+}
+
+WallElements::Stiffness WallElements::stiffness(int element, const Points& x, bool taut) const noexcept {
+  const auto e = static_cast<std::size_t>(element);
+  const Corners corners = gather(nodes_of_[e], x);
+  const double pressure = mean_pressure(e, corners);
+  Stiffness K = Stiffness::Zero();
+  Eigen::Matrix<double, 24, 1> swelling = Eigen::Matrix<double, 24, 1>::Zero();  // gradient of the volume by the points' J
+  each_point(e, corners, [&](const LawConstants& law, const CovariantForms& forms, const Six& C, const Scalars& p, double J, const Six& dJ) {
+    const Gradients B = gradients(forms, corners);
+    Six T;
+    law_energy(law, p.geometry, C.data(), J, dJ.data(), T.data());
+    T += pressure * dJ;
+    const SixSix D = law_tangent(law, p.geometry, C, taut) + pressure * volume_ratio_tangent(p.geometry, C);
+    K.noalias() += p.weight * B * D * B.transpose();
+    swelling += p.weight * B * dJ;
+    EightEight geometric = EightEight::Zero();
+    for (std::size_t m = 0; m < 6; ++m) geometric += 2.0 * p.weight * T[static_cast<int>(m)] * forms[m];
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b) K.block<3, 3>(3 * a, 3 * b).diagonal().array() += geometric(a, b);
+  });
+  return K + rows_[static_cast<std::size_t>(row_of_[e])].lambda_mean / volume_[e] * swelling * swelling.transpose();
 }
 
 WallElements::Strain WallElements::strain(int element, const Points& x) const noexcept {
   const auto e = static_cast<std::size_t>(element);
   const CovariantForms forms = covariant_forms(Vec3::Zero());
-  const Corners corners = gather(nodes_of_[e], x);
-  const Six C = covariant(forms, corners), G = covariant(forms, rest_[e]);
-  return {std::sqrt(C[0] / G[0]), std::sqrt(C[1] / G[1]), std::sqrt(C[2] / G[2]), volume(corners) / volume_[e]};
+  const Six C = covariant(forms, gather(nodes_of_[e], x)), G = covariant(forms, rest_[e]);
+  return {std::sqrt(C[0] / G[0]), std::sqrt(C[1] / G[1]), std::sqrt(C[2] / G[2]), std::sqrt(matrix_of(C).determinant() / matrix_of(G).determinant())};
 }
 
 Mat3 WallElements::stress(int element, const Vec3& local, const Points& x) const noexcept {
@@ -156,11 +135,11 @@ Mat3 WallElements::stress(int element, const Vec3& local, const Points& x) const
   Six dJ, T;
   const double J = volume_ratio(p.geometry, C.data(), dJ.data());
   law_energy(constants_[layer], p.geometry, C.data(), J, dJ.data(), T.data());
+  T += mean_pressure(e, corners) * dJ;
   const Mat3 g = corners * corners_to_products() * product_derivatives(local);
   Mat3 S = matrix_of(T);
   S.diagonal() *= 2.0;
-  const double pressure = rows_[static_cast<std::size_t>(row_of_[e])].lambda_mean * (volume(corners) / volume_[e] - 1.0);
-  return g * S * g.transpose() / J + pressure * Mat3::Identity();
+  return g * S * g.transpose() / J;
 }
 
 int WallElements::layer_at(int element, double zeta) const noexcept {
