@@ -1,0 +1,216 @@
+// Problems of the vessel wall: tubes with closed-form answers, the rabbit carotid, the ring that springs open, and the element itself.
+// Formulas and numbers: Holzapfel, Gasser & Ogden, J. Elasticity 61:1, 2000, with their quadrature by us; Lame; Timoshenko.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "evidence/problem_list.h"
+#include "evidence/rod_probe.h"
+#include "evidence/vessel_probe.h"
+
+namespace filum {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TubeSlice plain_tube(const WallLaw& law, int around) {
+  TubeSlice s;
+  s.shape.inner_radius = 0.5e-3;
+  s.shape.thickness = 0.25e-3;
+  s.shape.length = 0.1e-3;
+  s.layers = {{"wall", 0.25e-3, law}};
+  s.around = around;
+  s.through = around / 4;
+  return s;
+}
+
+WallLaw rubber() {
+  WallLaw law;
+  law.kind = WallLaw::Kind::neo_hookean;
+  law.mu = 170e3;
+  law.lambda = 200e6;
+  return law;
+}
+
+void list_lame(ProblemList& list, const char* name, double poisson, bool inner, double expected) {
+  ValidationProblem p;
+  p.name = name;
+  p.source = "Lame's thick tube, plane strain: a = 0.5 mm, b = 0.75 mm, E = 500 kPa, 13.332 Pa inside; order from 12, 24 and 48 elements around";
+  p.quantity = inner ? "inner displacement" : "outer displacement";
+  p.unit = "nm";
+  p.expected = expected;
+  p.tolerance = 0.005;
+  p.least_order = 1.8;
+  list.push_back({p, [poisson, inner](ValidationProblem& r) {
+                    std::array<double, 3> u{};
+                    for (int k = 0; k < 3; ++k) {
+                      const SliceState s = inflate(plain_tube(WallLaw::hooke(500e3, poisson), 12 << k), {13.332}).front();
+                      u[static_cast<std::size_t>(k)] = s.converged ? 1e9 * (inner ? s.inner - 0.5e-3 : s.outer - 0.75e-3) : NAN;
+                    }
+                    r.got = u[2];
+                    r.order = observed_order(u[0], u[1], u[2]);
+                  }});
+}
+
+void list_rubber(ProblemList& list, const char* name, double stretch, const std::array<double, 3>& pressure) {
+  ValidationProblem p;
+  p.name = name;
+  p.source = "Incompressible neo-Hookean tube under pressure and axial stretch, closed form: inner stretch 1.05, 1.2 and 1.5; lumen volume by the mesh";
+  p.quantity = "largest relative error of the lumen's volume";
+  p.tolerance = 0.005;
+  list.push_back({p, [stretch, pressure](ValidationProblem& r) {
+                    TubeSlice s = plain_tube(rubber(), 32);
+                    s.shape.stretch = stretch;
+                    const auto states = inflate(s, {pressure.begin(), pressure.end()});
+                    const double polygon = 16.0 / kPi * std::sin(kPi / 16.0);  // its area over the circle's
+                    const std::array<double, 3> inner = {1.05, 1.2, 1.5};
+                    for (std::size_t k = 0; k < 3; ++k) {
+                      const double exact = kPi * std::pow(0.5e-3 * inner[k], 2) * polygon;
+                      r.got = states[k].converged ? std::max(r.got, std::abs(states[k].lumen / exact - 1.0)) : NAN;
+                    }
+                  }});
+}
+
+constexpr std::array<double, 6> kPressures = {0.0, 2e3, 5e3, 10e3, 13.33e3, 20e3};  // [Pa]
+struct CarotidTable {
+  const char* name;
+  bool opened;
+  double stretch;
+  std::array<double, 6> radius;  // [mm], inner, by quadrature of the radial equilibrium
+  std::array<double, 6> force;   // [mN], reduced axial
+};
+const std::array<CarotidTable, 6> kCarotid = {{
+    {"vessel-hgo-closed-1.5", false, 1.5, {.5570, .9318, 1.1024, 1.1927, 1.2239, 1.2635}, {8.02, 8.09, 2.75, -10.13, -19.95, -41.32}},
+    {"vessel-hgo-closed-1.7", false, 1.7, {.4779, .8751, 1.0622, 1.1570, 1.1893, 1.2301}, {18.83, 23.58, 24.39, 18.82, 13.27, -0.16}},
+    {"vessel-hgo-closed-1.9", false, 1.9, {.3531, .6797, .9719, 1.0954, 1.1340, 1.1807}, {76.36, 94.48, 127.90, 148.77, 155.01, 160.10}},
+    {"vessel-hgo-opened-1.5", true, 1.5, {.5723, .9837, 1.1738, 1.2766, 1.3126, 1.3587}, {8.12, 8.32, 2.43, -12.18, -23.44, -48.09}},
+    {"vessel-hgo-opened-1.7", true, 1.7, {.4924, .9183, 1.1284, 1.2369, 1.2743, 1.3218}, {18.81, 24.85, 27.20, 22.32, 16.67, 2.37}},
+    {"vessel-hgo-opened-1.9", true, 1.9, {.3605, .6786, 1.0115, 1.1596, 1.2061, 1.2623}, {75.21, 94.99, 141.72, 178.09, 191.29, 206.46}},
+}};
+
+double worst_radius(const std::vector<SliceState>& states, const CarotidTable& t) {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < kPressures.size(); ++k)
+    worst = states[k].converged ? std::max(worst, std::abs(1e3 * states[k].inner / t.radius[k] - 1.0)) : NAN;
+  return worst;
+}
+
+/// Error of the reduced force over what the wall carries along the axis in all (the two differ by the lumen's share).
+double worst_force(const std::vector<SliceState>& states, const CarotidTable& t) {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < kPressures.size(); ++k) {
+    const double lumen = kPi * states[k].inner * states[k].inner * kPressures[k];
+    const double whole = 1e-3 * t.force[k] + kPi * 1e-6 * t.radius[k] * t.radius[k] * kPressures[k];
+    worst = std::max(worst, std::abs((states[k].axial_force - lumen) - 1e-3 * t.force[k]) / std::abs(whole));
+  }
+  return worst;
+}
+
+std::vector<SliceState> carotid(const CarotidTable& t, int around) {
+  TubeSlice s = rabbit_carotid(t.opened);
+  s.around = around;
+  s.through = around / 4;
+  s.shape.stretch = t.stretch;
+  return inflate(s, {kPressures.begin(), kPressures.end()});
+}
+
+void list_carotid(ProblemList& list) {
+  for (const CarotidTable& t : kCarotid) {
+    ValidationProblem p;
+    p.name = t.name;
+    p.source = "Rabbit carotid of Holzapfel, Gasser & Ogden 2000, media and adventitia, 0 to 20 kPa; one-dimensional quadrature of its equilibrium";
+    p.quantity = "largest relative error of the inner radius";
+    p.tolerance = 0.005;
+    list.push_back({p, [&t](ValidationProblem& r) { r.got = worst_radius(carotid(t, 24), t); }});
+    if (t.stretch != 1.7) continue;
+    p.name = std::string(t.name) + "-force";
+    p.quantity = "largest error of the axial force, relative to the whole force of the wall";
+    p.tolerance = 0.03;
+    list.push_back({p, [&t](ValidationProblem& r) { r.got = worst_force(carotid(t, 24), t); }});
+  }
+  ValidationProblem p;
+  p.name = "vessel-hgo-convergence";
+  p.source = "The same at stretch 1.7 and 13.33 kPa, opening angle 160 degrees; 8, 16 and 32 elements around";
+  p.quantity = "inner radius";
+  p.unit = "mm";
+  p.expected = 1.2743;
+  p.tolerance = 0.002;
+  list.push_back({p, [](ValidationProblem& r) {
+                    std::array<double, 3> u{};
+                    for (int k = 0; k < 3; ++k) {
+                      TubeSlice s = rabbit_carotid(true);
+                      s.around = 8 << k;
+                      s.through = s.around / 4;
+                      s.shape.stretch = 1.7;
+                      const SliceState at = inflate(s, {0.0, 5e3, 13.33e3}).back();
+                      u[static_cast<std::size_t>(k)] = at.converged ? 1e3 * at.inner : NAN;
+                    }
+                    r.got = u[2];
+                    r.order = observed_order(u[0], u[1], u[2]);
+                  }});
+}
+
+/// The opened sector closed to a ring without load: the stretch along the axis at which no axial force is left, by secants.
+SliceState closed_ring(int around) {
+  TubeSlice s = rabbit_carotid(true);
+  s.around = around;
+  s.through = around / 4;
+  std::array<double, 2> stretch = {1.0, 1.005}, force{};
+  SliceState state;
+  for (int k = 0; k < 8; ++k) {
+    s.shape.stretch = stretch[1];
+    if (k == 0) {
+      TubeSlice first = s;
+      first.shape.stretch = stretch[0];
+      force[0] = inflate(first, {0.0}).front().axial_force;
+    }
+    state = inflate(s, {0.0}).front();
+    force[1] = state.axial_force;
+    if (std::abs(force[1]) < 1e-9) break;
+    const double next = stretch[1] - force[1] * (stretch[1] - stretch[0]) / (force[1] - force[0]);
+    stretch = {stretch[1], next};
+    force[0] = force[1];
+  }
+  return state;
+}
+
+void list_ring(ProblemList& list) {
+  ValidationProblem p;
+  p.source = "Sector of 160 degrees opening angle closed to a ring without pressure or axial force (quadrature); 12, 24 and 48 elements around";
+  p.unit = "mm";
+  const auto ring = [&](const char* name, const char* quantity, double expected, bool inner) {
+    p.name = name;
+    p.quantity = quantity;
+    p.expected = expected;
+    p.tolerance = 0.004;
+    list.push_back({p, [inner](ValidationProblem& r) {
+                      std::array<double, 3> u{};
+                      for (int k = 0; k < 3; ++k) {
+                        const SliceState s = closed_ring(12 << k);
+                        u[static_cast<std::size_t>(k)] = s.converged ? 1e3 * (inner ? s.inner : s.outer) : NAN;
+                      }
+                      r.got = u[2];
+                      r.order = observed_order(u[0], u[1], u[2]);
+                    }});
+  };
+  ring("vessel-opening-ring-inner", "inner radius of the closed ring", 0.72606, true);
+  ring("vessel-opening-ring-outer", "outer radius of the closed ring", 1.10912, false);
+}
+
+}  // namespace
+
+void list_vessel(ProblemList& list) {
+  list_lame(list, "vessel-lame-inner-0.30", 0.3, true, 36.743);
+  list_lame(list, "vessel-lame-outer-0.30", 0.3, false, 29.117);
+  list_lame(list, "vessel-lame-inner-0.49", 0.49, true, 36.074);
+  list_lame(list, "vessel-lame-outer-0.49", 0.49, false, 24.314);
+  list_rubber(list, "vessel-neo-hooke-1.0", 1.0, {8706.70, 27881.61, 48238.36});
+  list_rubber(list, "vessel-neo-hooke-1.5", 1.5, {23694.96, 31233.94, 38875.56});
+  list_carotid(list);
+  list_ring(list);
+  list_vessel_element(list);
+}
+
+}  // namespace filum
