@@ -76,7 +76,7 @@ S volume_ratio(const LawGeometry<S>& g, const S* C, S* dJ) noexcept {
   dJ[4] = 2.0 * (C[3] * C[5] - C[0] * C[4]);
   dJ[5] = 2.0 * (C[3] * C[4] - C[1] * C[5]);
   const S det = C[0] * dJ[0] + 0.5 * (C[3] * dJ[3] + C[5] * dJ[5]);
-  const S root = root_of(positive_part(S(det * g.inverse_root * g.inverse_root)) + kTiny);
+  const S root = root_of(positive_part(S(det * g.inverse_root * g.inverse_root - kTiny)) + kTiny);
   const S scale = 0.5 * g.inverse_root * g.inverse_root / root;
   for (int m = 0; m < 6; ++m) dJ[m] = dJ[m] * scale;
   return root;

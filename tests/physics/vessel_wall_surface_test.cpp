@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/vessel_wall.h"
+
+using namespace filum;
+
+namespace {
+
+VesselWall plain() {
+  TubeShape s;
+  WallLaw law = WallLaw::hooke(300e3, 0.45);
+  return VesselWall(make_tube(s), {{"intima", 1e-5, law}, {"media", 5e-5, law}, {"adventitia", 4e-5, law}}, {});
+}
+
+TEST(VesselWallSurface, ASegmentMeetsOuterThenInnerSurface) {
+  VesselWall wall = plain();
+  const WallState s = wall.first_state();
+  wall.refit(s);
+  const Vec3 a(1e-3, 1e-6, 1.51e-3), b(-1e-3, 1e-6, 1.51e-3);
+  const WallCrossing in = wall.crossing(s, a, b);
+  ASSERT_TRUE(in.found);
+  EXPECT_EQ(in.surface, WallSurface::outer);
+  EXPECT_EQ(in.layer, 2);
+  EXPECT_GT(in.normal.x(), 0.9);
+  EXPECT_NEAR((a + in.fraction * (b - a) - wall.position(s, in.point)).norm(), 0.0, 2e-7);
+  EXPECT_NEAR(wall.depth_at(in.point), 0.0, 1e-9);
+  const WallCrossing through = wall.crossing(s, a, b, in.fraction + 1e-9);
+  ASSERT_TRUE(through.found);
+  EXPECT_EQ(through.surface, WallSurface::inner);
+  EXPECT_EQ(through.layer, 0);
+  EXPECT_LT(through.normal.x(), -0.9);
+  EXPECT_NEAR((through.fraction - in.fraction) * 2e-3, 1e-4, 2e-6);
+  const WallCrossing far_side = wall.crossing(s, a, b, through.fraction + 1e-9);
+  EXPECT_EQ(far_side.surface, WallSurface::inner);
+  EXPECT_LT(wall.position(s, far_side.point).x(), 0.0);
+  EXPECT_FALSE(wall.crossing(s, a, Vec3(0.5e-3, 0, 1.5e-3)).found);
+}
+
+TEST(VesselWallSurface, TheCutEdgeIsItsOwn) {
+  VesselWall wall = plain();
+  const WallState s = wall.first_state();
+  wall.refit(s);
+  const WallCrossing c = wall.crossing(s, Vec3(0.4e-3, 0, 4e-3), Vec3(0.4e-3, 0, 2.9e-3));
+  ASSERT_TRUE(c.found);
+  EXPECT_EQ(c.surface, WallSurface::edge);
+  EXPECT_NEAR(c.normal.z(), 1.0, 1e-9);
+}
+
+TEST(VesselWallSurface, NearestTellsInsideFromOutside) {
+  VesselWall wall = plain();
+  const WallState s = wall.first_state();
+  wall.refit(s);
+  const WallCrossing outside = wall.nearest(s, Vec3(0.48e-3, 0, 1.5e-3), 1e-4);
+  ASSERT_TRUE(outside.found);
+  EXPECT_NEAR(outside.fraction, 0.03e-3, 1e-9);
+  EXPECT_EQ(outside.surface, WallSurface::outer);
+  EXPECT_NEAR(wall.nearest(s, Vec3(0.43e-3, 0, 1.5e-3), 1e-4).fraction, -0.02e-3, 1e-6);
+  EXPECT_NEAR(wall.nearest(s, Vec3(0.33e-3, 0, 1.5e-3), 1e-4).fraction, 0.02e-3, 1e-6);  // in the lumen
+  EXPECT_FALSE(wall.nearest(s, Vec3(0.6e-3, 0, 1.5e-3), 1e-4).found);
+}
+
+TEST(VesselWallSurface, LocateInvertsPosition) {
+  VesselWall wall = plain();
+  WallState s = wall.first_state();
+  s.x.row(0) *= 1.2;
+  const WallPoint at{77, Vec3(0.4, -0.7, 0.2)};
+  const WallPoint found = wall.locate(s, wall.position(s, at), {77, Vec3::Zero()});
+  EXPECT_LT((found.local - at.local).norm(), 1e-8);
+}
+
+TEST(VesselWallSurface, DirectionsAreDerivativesOfPosition) {
+  VesselWall wall = plain();
+  const WallState s = wall.first_state();
+  const WallPoint at{30, Vec3(0.1, 0.5, -0.3)};
+  const Mat3 g = wall.directions(s, at);
+  for (int c = 0; c < 3; ++c) {
+    WallPoint up = at, down = at;
+    up.local[c] += 1e-4;
+    down.local[c] -= 1e-4;
+    EXPECT_LT(((wall.position(s, up) - wall.position(s, down)) / 2e-4 - g.col(c)).norm(), 1e-12);
+  }
+}
+
+TEST(VesselWallSurface, WhatIsGoneIsNotMet) {
+  VesselWall wall = plain();
+  WallState s = wall.first_state();
+  wall.refit(s);
+  const Vec3 a(1e-3, 1e-6, 1.51e-3), b(0, 1e-6, 1.51e-3);
+  const WallCrossing c = wall.crossing(s, a, b);
+  ASSERT_TRUE(c.found);
+  s.soundness[static_cast<std::size_t>(c.point.element)] = 0.0;
+  EXPECT_FALSE(wall.crossing(s, a, b).found);
+}
+
+}  // namespace

@@ -1,0 +1,167 @@
+#include "physics/vessel_wall.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/rng.h"
+#include "physics/vessel_wall_pressure.h"
+#include "physics/vessel_wall_static.h"
+#include "tests/physics/allocation_count.h"
+
+using namespace filum;
+
+namespace {
+
+std::vector<WallLayer> artery() {
+  WallLaw law;
+  law.kind = WallLaw::Kind::fibres;
+  law.mu = 60e3;
+  law.lambda = 3e6;
+  law.k1 = 60e3;
+  law.k2 = 0.84;
+  law.beta = 0.5;
+  return {{"media", 6e-5, law}, {"adventitia", 4e-5, law}};
+}
+
+TubeShape small_tube() {
+  TubeShape s;
+  s.around = 12;
+  s.along = 6;
+  s.length = 1.5e-3;
+  return s;
+}
+
+VesselWall stump(WallOptions options = {}) { return VesselWall(make_tube(small_tube()), artery(), options); }
+
+/// Pulled slowly by a dead load, the moving wall comes to rest where the equilibrium solver says.
+TEST(VesselWall, ComesToRestAtEquilibrium) {
+  WallOptions options;
+  options.single_precision = false;
+  options.tolerance = 1e-8;
+  options.max_iterations = 200;
+  VesselWall wall = stump(options);
+  WallState state = wall.first_state();
+  const WallPoint at{5 * 12 + 3, Vec3(0, 1, 0)};
+  const Vec3 force(0, 3e-4, 1e-4);
+  for (int k = 0; k < 300; ++k) {
+    wall.clear_loads();
+    wall.add_load(state, at, force);
+    ASSERT_TRUE(wall.step(state).converged) << k;
+  }
+  const VesselMesh mesh = make_tube(small_tube());
+  const WallElements elements(mesh, artery());
+  WallLoadCase load;
+  load.fixed.assign(static_cast<std::size_t>(3 * mesh.n_nodes()), 0);
+  for (const int i : mesh.held)
+    for (int c = 0; c < 3; ++c) load.fixed[static_cast<std::size_t>(3 * i + c)] = 1;
+  load.force = Points::Zero(3, mesh.n_nodes());
+  const auto w = corner_weights(at.local);
+  for (int a = 0; a < 8; ++a) load.force.col(mesh.elements[static_cast<std::size_t>(at.element)][static_cast<std::size_t>(a)]) += w[a] * force;
+  Points x = mesh.nodes;
+  ASSERT_TRUE(solve_static(mesh, elements, load, x, 1e-10).converged);
+  const double moved = (x - mesh.nodes).cwiseAbs().maxCoeff();
+  EXPECT_GT(moved, 5e-5);
+  EXPECT_LT((x - state.x).cwiseAbs().maxCoeff(), 2e-3 * moved);
+}
+
+TEST(VesselWall, TurnsOverWithItsClamp) {
+  VesselWall wall = stump();
+  WallState state = wall.first_state();
+  const Points before = state.x;
+  for (int k = 1; k <= 250; ++k) {
+    wall.place_clamp(0, {Vec3(1e-6 * k, 0, 0), Quat(Eigen::AngleAxisd(std::numbers::pi * k / 250.0, Vec3::UnitX()))});
+    ASSERT_TRUE(wall.step(state).sound);
+  }
+  for (int k = 0; k < 200; ++k) wall.step(state);
+  const Pose X{Vec3(250e-6, 0, 0), Quat(1e-17, 1, 0, 0)};
+  for (int i = 0; i < before.cols(); ++i) EXPECT_LT((state.x.col(i) - X * Vec3(before.col(i))).norm(), 2e-6);
+}
+
+TEST(VesselWall, PressureWidensTheLumen) {
+  VesselWall wall = stump();
+  WallState state = wall.first_state();
+  double last = lumen_volume(wall.mesh(), 0, state.x);
+  for (const double mmhg : {25.0, 50.0, 100.0}) {
+    wall.set_pressure(0, mmhg * 133.322);
+    for (int k = 0; k < 200; ++k) ASSERT_TRUE(wall.step(state).sound);
+    const double now = lumen_volume(wall.mesh(), 0, state.x);
+    EXPECT_GT(now, 1.02 * last) << mmhg;
+    last = now;
+  }
+  wall.set_pressure(0, 0.0);
+  for (int k = 0; k < 400; ++k) wall.step(state);
+  EXPECT_NEAR(lumen_volume(wall.mesh(), 0, state.x) / lumen_volume(wall.mesh(), 0, wall.mesh().nodes), 1.0, 2e-3);
+}
+
+TEST(VesselWall, SameStateSameLoadsSameBits) {
+  VesselWall one = stump(), other = stump();
+  WallState a = one.first_state();
+  const WallPoint at{40, Vec3(0.3, -0.2, 1)};
+  const auto drive = [&](VesselWall& w, WallState& s, int k) {
+    w.clear_loads();
+    w.add_load(s, at, Vec3(1e-4 * std::sin(0.1 * k), 2e-4, 0), 20.0);
+    w.step(s);
+  };
+  for (int k = 0; k < 20; ++k) drive(one, a, k);
+  WallState b = a;
+  for (int k = 20; k < 40; ++k) drive(one, a, k);
+  for (int k = 20; k < 40; ++k) drive(other, b, k);
+  EXPECT_EQ((a.x - b.x).cwiseAbs().maxCoeff(), 0.0);
+  EXPECT_EQ((a.v - b.v).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(VesselWall, AStepAllocatesNothing) {
+  if (!FILUM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "allocations are not counted under sanitizers";
+  VesselWall wall = stump();
+  WallState state = wall.first_state();
+  const WallPoint at{40, Vec3(0.3, -0.2, 1)};
+  wall.set_pressure(0, 2000.0);
+  wall.step(state);
+  const long before = allocations;
+  for (int k = 0; k < 20; ++k) {
+    wall.clear_loads();
+    wall.add_load(state, at, Vec3(0, 3e-4, 0), 20.0);
+    wall.refit(state);
+    (void)wall.crossing(state, Vec3(-1e-3, 0, 1e-3), Vec3(1e-3, 0, 1e-3));
+    (void)wall.nearest(state, Vec3(0.4e-3, 0, 1e-3), 1e-4);
+    wall.step(state);
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+/// Random loads far beyond what tissue bears, clamps that jump: no number is lost and nothing is turned inside out.
+TEST(VesselWall, SurvivesViolentHands) {
+  VesselWall wall = stump();
+  WallState state = wall.first_state();
+  Rng rng(11);
+  for (int k = 0; k < 400; ++k) {
+    wall.clear_loads();
+    for (int n = 0; n < 4; ++n) {
+      const WallPoint at{static_cast<int>(rng.below(72)), Vec3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1))};
+      wall.add_load(state, at, Vec3(rng.normal(), rng.normal(), rng.normal()) * 2e-2, 100.0 * rng.uniform());
+    }
+    if (k % 50 == 0) wall.place_clamp(0, {Vec3(rng.normal(), rng.normal(), rng.normal()) * 5e-4, Quat(Eigen::AngleAxisd(rng.normal(), Vec3::UnitZ()))});
+    const WallSummary r = wall.step(state);
+    ASSERT_TRUE(r.sound) << k;
+    ASSERT_TRUE(state.x.allFinite() && state.v.allFinite()) << k;
+  }
+  wall.clear_loads();
+  for (int k = 0; k < 1500; ++k) wall.step(state);
+  const Pose X = state.clamp[0];
+  double worst = 0.0;
+  for (int i = 0; i < state.x.cols(); ++i) worst = std::max(worst, (state.x.col(i) - X * Vec3(wall.mesh().nodes.col(i))).norm());
+  EXPECT_LT(worst, 2e-5);  // it has sprung back
+}
+
+TEST(VesselWall, RefusesMoreLoadsThanItHolds) {
+  VesselWall wall = stump();
+  const WallState state = wall.first_state();
+  for (int k = 0; k < VesselWall::kMostLoads; ++k) ASSERT_TRUE(wall.add_load(state, {1, Vec3::Zero()}, Vec3::Zero()));
+  EXPECT_FALSE(wall.add_load(state, {1, Vec3::Zero()}, Vec3::Zero()));
+  wall.clear_loads();
+  EXPECT_FALSE(wall.add_load(state, {}, Vec3::Zero()));
+}
+
+}  // namespace
