@@ -13,7 +13,7 @@ namespace filum {
 namespace {
 
 // The physical effects that the world is made of, each one header below src/physics; those of reconcile come from its catalogue.
-constexpr const char* kEffects[] = {"elastic_rod", "rod_contact", "friction", "rod_obstacle", "thread_grasp", "instrument", "linear_fem", "spatula_contact"};
+constexpr const char* kEffects[] = {"elastic_rod", "rod_contact", "friction", "rod_obstacle", "thread_grasp", "instrument", "linear_fem", "spatula_contact", "needle", "needle_track", "rod_tether"};
 
 int run(const CommonOptions& o) {
   using Json = nlohmann::ordered_json;

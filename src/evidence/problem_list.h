@@ -24,5 +24,8 @@ void list_friction(ProblemList& list);  // sliding on a plane and round a bar
 void list_knots(ProblemList& list);     // tight knots
 void list_tissue(ProblemList& list);    // brain: elements, time, half space, solvers
 void list_spatula(ProblemList& list);   // blade on tissue
+void list_vessel(ProblemList& list);    // tubes, the carotid, the ring
+void list_vessel_element(ProblemList& list);  // the wall's element alone
+void list_needle_track(ProblemList& list);  // a needle through tissue
 
 }  // namespace filum

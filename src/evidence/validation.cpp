@@ -18,6 +18,8 @@ ProblemList all_problems() {
   list_knots(list);
   list_tissue(list);
   list_spatula(list);
+  list_vessel(list);
+  list_needle_track(list);
   return list;
 }
 

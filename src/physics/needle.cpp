@@ -10,6 +10,7 @@ namespace filum {
 namespace {
 
 constexpr int kMostHalvings = 12;
+constexpr double kRollGive = 0.05;    // [rad], by which a wire turns between the pads before it slips
 constexpr double kLongestTurn = 0.3;  // [rad], in one iteration
 
 Mat3 cross_matrix(const Vec3& r) noexcept {
@@ -107,8 +108,8 @@ void NeedleBody::add_grips(const NeedleState& s, Trial& t) noexcept {
     }
     const Vec3 axis = t.X.q * shape_.tangent(g.arc);
     const Vec3 turn = rotation_vector(t.X.q * s.X_WN.q.conjugate()) - rotation_vector(tool.X_end.q * tool.X_start.q.conjugate());
-    const double k_roll = k * shape_.wire_radius * shape_.wire_radius;
-    const LinePoint p = on_line(g.roll + turn.dot(axis), roll_limit(tool), k_roll);
+    const double roll_most = roll_limit(tool);
+    const LinePoint p = on_line(g.roll + turn.dot(axis), roll_most, std::max(roll_most, 1e-12) / kRollGive);
     roll_[i] = p.elastic;
     t.energy += p.energy;
     t.gradient.tail<3>() -= p.force * axis;
@@ -168,8 +169,9 @@ void NeedleBody::add_tethers(const NeedleOptions& o, Trial& t) noexcept {
     c.force = -(c.stiffness * d);
     Mat3 k = c.stiffness;
     t.energy += 0.5 * d.dot(c.stiffness * d);
-    if (c.stick > 0.0) {
-      const double u = d.dot(c.along), speed = (u - c.start) / o.dt;
+    c.slid = 0.0;
+    if (const double u = d.dot(c.along); c.stick > 0.0 && !(c.one_way && u < 0.0)) {
+      const double speed = (u - c.start) / o.dt;
       const LinePoint f = on_line(u, c.limit, c.stick);
       c.force += (f.force - c.drag * speed) * c.along;
       k += (f.stiffness + c.drag / o.dt) * c.along * c.along.transpose();

@@ -25,7 +25,7 @@ struct NeedleShape {
   double flat_width = 0.0;        // [m], of a body flattened for the holder, 0: round
   double pad_friction = 0.3;      // [-], steel on the pads
   double sheet_friction = 0.3;    // [-], on the background sheet
-  double grip_stiffness = 1500.0; // [N/m], of each of the three points held between pads: pads and fingers behind them
+  double grip_stiffness = 3000.0; // [N/m], of each of the three points held between pads: pads and fingers behind them
 
   double angle() const noexcept { return 2.0 * std::numbers::pi * circle; }    // [rad], A
   double length() const noexcept { return bend_radius * angle(); }             // [m], L

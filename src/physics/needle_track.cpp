@@ -79,6 +79,7 @@ void NeedleTracks::hold_point(const VesselWall& wall, const WallState& w, const 
     const NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
     const double ahead = std::max(0.0, L - track.knots[static_cast<std::size_t>(track.n - 1)].strand);
     t.stick = material_.point_stiffness;
+    t.one_way = true;  // nothing is cut on the way back
     t.limit = l.cutting + l.friction * ahead;
     t.drag = l.drag * ahead;
   }
@@ -89,8 +90,9 @@ void NeedleTracks::hold_point(const VesselWall& wall, const WallState& w, const 
 int NeedleTracks::follow(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const RodState* thread, double dt,
                          const std::vector<RodTether>& on_needle, const std::vector<RodTether>& on_thread, TrackEvent* list, int room) noexcept {
   Events e{list, room, 0};
-  for (int i = 0; i < s.n; ++i) s.tracks[static_cast<std::size_t>(i)].pull = 0.0;
-  for (const Use& u : uses_) take_knot(wall, w, s, u, (u.needle ? on_needle : on_thread)[static_cast<std::size_t>(u.tether)], dt, e);
+  load_.fill(Vec3::Zero());
+  for (const Use& u : uses_) take_knot(wall, w, s, u, (u.needle ? on_needle : on_thread)[static_cast<std::size_t>(u.tether)], dt);
+  for (int i = 0; i < s.n; ++i) tear(wall, w, s, s.tracks[static_cast<std::size_t>(i)], load_[static_cast<std::size_t>(i)], e);
   drop_passed(s, e);
   if (thread != nullptr) {
     const double whole = thread_length(*thread);
@@ -106,7 +108,7 @@ int NeedleTracks::follow(VesselWall& wall, const WallState& w, TrackState& s, co
 }
 
 /// The load of one knot on the tissue, what slid through it, and whether it tears.
-void NeedleTracks::take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt, Events& e) noexcept {
+void NeedleTracks::take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt) noexcept {
   NeedleTrack& track = s.tracks[static_cast<std::size_t>(u.track)];
   TrackKnot& knot = track.knots[static_cast<std::size_t>(u.knot)];
   const Vec3 load = -t.force;
@@ -117,34 +119,33 @@ void NeedleTracks::take_knot(VesselWall& wall, const WallState& w, TrackState& s
   if (t.slid == 0.0) k += t.stick * t.along * t.along.transpose();
   wall.add_load(w, knot.at, load, k);
   track.hole = std::max(track.hole, std::max(needle_.wire_radius, track.hole) + material_.wear * knot.lateral * std::abs(t.slid));
-  track.peak = std::max(track.peak, load.norm());
-  track.pull = std::max(track.pull, load.norm());
+  load_[static_cast<std::size_t>(u.track)] += load;
   s.dissipated += t.limit * std::abs(t.slid) + t.drag * t.slid * t.slid / dt;
-  tear(wall, w, s, track, knot, load, e);
 }
 
-/// A knot that is pulled harder than its bite bears moves through the tissue until it is not.
-void NeedleTracks::tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, TrackKnot& knot, const Vec3& load,
-                        Events& e) noexcept {
+/// A track that is pulled harder than its bite bears moves through the tissue until it is not.
+void NeedleTracks::tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, const Vec3& load, Events& e) noexcept {
   const double pull = load.norm();
-  if (pull < 0.25 * material_.tear * needle_.wire_radius) return;  // bears that with the least bite there is
-  const double bears = material_.tear * walk_.bite(wall, knot.at);
+  track.pull = pull;
+  track.peak = std::max(track.peak, pull);
+  if (track.n == 0 || pull < 0.25 * material_.tear * needle_.wire_radius) return;  // any bite bears that
+  double bite = walk_.bite(wall, track.knots[0].at);
+  for (int k = 1; k < track.n; ++k) bite = std::min(bite, walk_.bite(wall, track.knots[static_cast<std::size_t>(k)].at));
+  const double bears = material_.tear * bite;
   if (pull <= bears) return;
   if (track.torn == 0.0) e.say("tear", pull);
-  const double step = std::min(0.5 * needle_.wire_radius, (pull - bears) / material_.hold);
-  bool inside = false;
-  const WallPoint to = walk_.move(wall, w, wall.position(w, knot.at) + step * load / pull, knot.at, inside);
+  const double step = std::min(0.5 * needle_.wire_radius, (pull - bears) / (material_.hold * track.n));
   track.torn += step;
   s.dissipated += pull * step;
-  if (inside) {
+  bool out = false;
+  for (int k = 0; k < track.n; ++k) {
+    TrackKnot& knot = track.knots[static_cast<std::size_t>(k)];
+    bool inside = false;
+    const WallPoint to = walk_.move(wall, w, wall.position(w, knot.at) + step * load / pull, knot.at, inside);
+    out = out || (!inside && walk_.bite(wall, to) < 0.5 * needle_.wire_radius);
     knot.at = to;
-    return;
   }
-  const bool at_edge = walk_.bite(wall, to) < 0.5 * needle_.wire_radius;
-  if (!at_edge) {  // slid along a surface, not out of the edge
-    knot.at = to;
-    return;
-  }
+  if (!out) return;
   e.say("torn-out", pull);
   track.n = 0;
   track.ended = 2;

@@ -9,8 +9,8 @@
 //   Insertion  F = F_cut + sum over the length inside (f + c v): linear in depth (Okamura, Simone & O'Leary, IEEE TBME 51:1707, 2004).
 //   Bends     Each knot adds mu times its lateral force: summed over a bend this is the capstan.
 //   Sawing    The hole's radius grows by wear x lateral force x length drawn through (Archard).
-//   Tearing   A knot bears at most tear x bite (distance to the cut edge); beyond that it moves through the tissue the way it is pulled,
-//             until its load is what it bears. As the bite shrinks so does that, and the last of it lets go at once.
+//   Tearing   A track bears at most tear x bite (distance of its knot nearest to the cut edge); beyond that all of it moves through the
+//             tissue the way it is pulled, until its load is what it bears. As the bite shrinks so does that, and the rest lets go at once.
 // Neglects: cracks ahead of the knot, healing of stretch; a tear leaves the elements whole. Constants are orders of magnitude from
 // clinical.md 4 and 6 (proposals). Tests: needle_track_test; `filum validate` track-*.
 
@@ -67,7 +67,7 @@ struct NeedleTrack {
   double shallow = 1.0, deep = 0.0;             // depth_at of its knots, least and most
   double hole = 0.0;                            // [m], radius
   double torn = 0.0;                            // [m]
-  double peak = 0.0, pull = 0.0;                // [N], largest load of a knot so far; of the thread along it now
+  double peak = 0.0, pull = 0.0;                // [N], load on the tissue: largest so far, now
 };
 
 /// What the needle's point rests on.
@@ -125,8 +125,8 @@ class NeedleTracks {
   const PunctureLayer& layer(int k) const noexcept { return material_.layers[std::min(static_cast<std::size_t>(k), material_.layers.size() - 1)]; }
   RodTether tether_of(const VesselWall& wall, const WallState& w, const TrackKnot& k, double arc, const Vec3& along, const Vec3& x, double share) const noexcept;
   void hold_point(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, std::vector<RodTether>& on_needle) noexcept;
-  void take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt, Events& e) noexcept;
-  void tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, TrackKnot& knot, const Vec3& load, Events& e) noexcept;
+  void take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt) noexcept;
+  void tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, const Vec3& load, Events& e) noexcept;
   void take_point(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const std::vector<RodTether>& on_needle, Events& e) noexcept;
   void rest_on_surface(VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept;
   void advance(const VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& tip, const Vec3& along) noexcept;
@@ -140,6 +140,7 @@ class NeedleTracks {
   NeedleShape needle_;
   WallWalk walk_;
   std::vector<Use> uses_;
+  std::array<Vec3, kMaxTracks> load_;  // [N], on the tissue of each track in this step
   int point_tether_ = -1;
 };
 

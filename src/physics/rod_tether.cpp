@@ -12,6 +12,7 @@ Vec3 offset(const RodTether& t, const Points& x) noexcept {
   return (1.0 - t.s) * x.col(t.edge) + t.s * x.col(t.edge + 1) - t.anchor;
 }
 
+bool resists(const RodTether& t, double u) noexcept { return t.stick > 0.0 && !(t.one_way && u < 0.0); }
 bool slips(const RodTether& t, double u) noexcept { return t.stick * std::abs(u) > t.limit; }
 
 }  // namespace
@@ -31,8 +32,8 @@ double RodTethers::energy(const Points& x, double dt) const noexcept {
   for (const RodTether& t : list) {
     const Vec3 d = offset(t, x);
     sum += 0.5 * d.dot(t.stiffness * d);
-    if (t.stick <= 0.0) continue;
-    const double u = d.dot(t.along), bend = t.limit / t.stick;
+    const double u = d.dot(t.along), bend = t.stick > 0.0 ? t.limit / t.stick : 0.0;
+    if (!resists(t, u)) continue;
     sum += slips(t, u) ? t.limit * (std::abs(u) - 0.5 * bend) : 0.5 * t.stick * u * u;
     sum += 0.5 * t.drag / dt * (u - t.start) * (u - t.start);
   }
@@ -43,8 +44,7 @@ void RodTethers::add_gradient(const Points& x, double dt, Eigen::Matrix4Xd& grad
   for (RodTether& t : list) {
     const Vec3 d = offset(t, x);
     t.force = -(t.stiffness * d);
-    if (t.stick > 0.0) {
-      const double u = d.dot(t.along);
+    if (const double u = d.dot(t.along); resists(t, u)) {
       const double dry = slips(t, u) ? std::copysign(t.limit, u) : t.stick * u;
       t.force -= (dry + t.drag / dt * (u - t.start)) * t.along;
       t.slid = u - dry / t.stick;
@@ -57,8 +57,8 @@ void RodTethers::add_gradient(const Points& x, double dt, Eigen::Matrix4Xd& grad
 void RodTethers::add_stiffness(const Points& x, double dt, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
   for (const RodTether& t : list) {
     Mat3 k = t.stiffness;
-    if (t.stick > 0.0) {
-      const double along = (slips(t, offset(t, x).dot(t.along)) ? 0.0 : t.stick) + t.drag / dt;
+    if (const double u = offset(t, x).dot(t.along); resists(t, u)) {
+      const double along = (slips(t, u) ? 0.0 : t.stick) + t.drag / dt;
       k += along * t.along * t.along.transpose();
     }
     matrix.add_diagonal(t.edge, pad((1.0 - t.s) * (1.0 - t.s) * k));

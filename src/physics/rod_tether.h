@@ -26,6 +26,7 @@ struct RodTether {
   double stick = 0.0;                // [N/m], before it slips
   double drag = 0.0;                 // [N s/m]
   double start = 0.0;                // [m], u at the start of the step
+  bool one_way = false;              // resists u > 0 only
   // Results
   int edge = 0;
   double s = 0.0;

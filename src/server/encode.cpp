@@ -1,6 +1,7 @@
 #include "server/encode.h"
 
 #include "server/encode_brain.h"
+#include "server/encode_needle.h"
 
 #include <algorithm>
 #include <array>
@@ -168,6 +169,8 @@ std::string scene_message(const SceneDescription& scene) {
                   {"objects", objects},
                   {"field", scene.has_field ? vector_json(scene.field_W) : json()},
                   {"brain", brain_scene_json(scene.brain)},
+                  {"needle", needle_scene_json(scene.needle)},
+                  {"tissue", tissue_scene_json(scene.tissue)},
                   {"capacity", scene.capacity}});
 }
 
@@ -219,6 +222,7 @@ std::string frame_body(const Observation& o, const TaskView* task, const std::ve
   write_cuts(w, o);
   write_objects(w, o);
   w.raw(",\"brain\":").raw(brain_frame_text(o.brain));
+  w.raw(",\"needle\":").raw(needle_frame_text(o.needle)).raw(",\"tissue\":").raw(tissue_frame_text(o.tissue));
   w.raw(",\"overruns\":").whole(static_cast<long long>(o.overruns)).raw(",\"real_time_factor\":").number(o.real_time_factor);
   w.raw(",\"task\":").raw(task == nullptr ? "null" : text_of(task_json(*task)));
   w.raw(",\"devices\":").raw(text_of(list_json(devices, device_json))).raw("}");

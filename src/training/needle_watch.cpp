@@ -13,7 +13,7 @@ constexpr double kRightAngle = 0.5 * std::numbers::pi;
 
 int passes_done(const TissueObservation& t) {
   return static_cast<int>(std::count_if(t.passes.begin(), t.passes.begin() + t.n_passes, [](const PassObservation& p) {
-    return p.out && p.state != PassObservation::State::needle && p.state != PassObservation::State::open;
+    return p.out && p.state == PassObservation::State::thread;
   }));
 }
 

@@ -22,7 +22,7 @@ NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle
   options_.gravity = model.step.gravity;
   options_.sheet = model.description.floor_height;
   for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].pads = model.instruments[i].pads;
-  if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape());
+  if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape(), model.description.capacity);
 }
 
 void NeedleScene::start(State& s) const {
@@ -106,6 +106,7 @@ void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexc
   const NeedleSummary summary = body_.step(s.needle, options_);
   if (!summary.sound || summary.residual > kTroubleForce) say(o, "solver-trouble", -1, summary.residual, "N");
   body_.tethers.pop_back();
+  if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments, s.force, s.torque);
   if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.thread, body_.tethers, rod.tethers.list, o);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {
     s.force[i] += body_.tools[i].force;

@@ -87,7 +87,7 @@ void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
   m.sources.push_back(file);
   v->track = load_track(root + "/" + file);
   if (v->track.layers.size() != v->layers.size()) node.refuse("track", "as many layers as the tissue has");
-  VesselScene(*v, m.needle->shape).describe(m.description.tissue);
+  VesselScene(*v, m.needle->shape, m.description.capacity).describe(m.description.tissue);
   m.vessel = std::move(v);
 }
 

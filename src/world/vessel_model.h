@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "physics/needle_track.h"
+#include "world/vessel_contact.h"
 
 namespace filum {
 
@@ -21,6 +22,7 @@ struct VesselModel {
 struct VesselState {
   WallState wall;
   TrackState tracks;
+  TouchState touches;
 };
 
 }  // namespace filum

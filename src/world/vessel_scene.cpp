@@ -21,8 +21,8 @@ std::uint64_t hash_point(const WallPoint& p, std::uint64_t h) noexcept {
 
 }  // namespace
 
-VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle)
-    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), first_(wall_.first_state()) {
+VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity)
+    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), first_(wall_.first_state()) {
   wall_.settle(first_, 500);
   wall_.refit(first_);
 }
@@ -50,16 +50,23 @@ void VesselScene::size_observation(Observation& o) const {
 
 void VesselScene::hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle,
                        std::vector<RodTether>& on_thread) noexcept {
+  wall_.clear_loads();
   tracks_.hold(wall_, s.wall, s.tracks, X_WN, &thread, on_needle, on_thread);
+  contact_.hold(wall_, s.wall, s.touches, thread, on_thread);
+}
+
+void VesselScene::press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states,
+                        std::vector<Vec3>& force, std::vector<Vec3>& torque) noexcept {
+  contact_.press(wall_, s.wall, tools, states, force, torque);
 }
 
 void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
                        const std::vector<RodTether>& on_thread, Observation& o) noexcept {
   std::array<TrackEvent, 8> events;
-  wall_.clear_loads();
   const int n = tracks_.follow(wall_, s.wall, s.tracks, X_WN, &thread, model_.wall.dt, on_needle, on_thread, events.data(), static_cast<int>(events.size()));
   for (int k = 0; k < n && o.n_events < static_cast<int>(o.events.size()); ++k)
     o.events[static_cast<std::size_t>(o.n_events++)] = {events[static_cast<std::size_t>(k)].name, -1, events[static_cast<std::size_t>(k)].value, "N"};
+  contact_.follow(wall_, s.wall, s.touches, s.tracks, thread, on_thread);
   const WallSummary summary = wall_.step(s.wall);
   if (!summary.sound && o.n_events < static_cast<int>(o.events.size()))
     o.events[static_cast<std::size_t>(o.n_events++)] = {"solver-trouble", -1, summary.residual, "N"};
@@ -113,6 +120,11 @@ std::uint64_t hash_vessel(const VesselState& s) noexcept {
       const std::array<double, 3> values = {knot.strand, knot.span, knot.lateral};
       h = hash_bytes(values.data(), sizeof(values), hash_point(knot.at, h));
     }
+  }
+  for (int k = 0; k < s.touches.n; ++k) {
+    const ThreadTouch& touch = s.touches.touches[static_cast<std::size_t>(k)];
+    const std::array<double, 5> row = {touch.arc, touch.load, touch.normal.x(), touch.normal.y(), touch.normal.z()};
+    h = hash_bytes(row.data(), sizeof(row), hash_point(touch.at, h));
   }
   const std::array<double, 7> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,
                                      t.point_before.x(), t.point_before.y(), t.point_before.z()};

@@ -10,13 +10,16 @@ namespace filum {
 
 class VesselScene {
  public:
-  VesselScene(const VesselModel& model, const NeedleShape& needle);
+  VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity);
 
   VesselState start(const Vec3& point) const;
   void describe(TissueDescription& d) const;
   void size_observation(Observation& o) const;
 
   void hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
+  /// Jaws against the tissue; adds to the forces on them. Before step().
+  void press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states,
+             std::vector<Vec3>& force, std::vector<Vec3>& torque) noexcept;
   /// After needle and thread have moved: loads, punctures and tears, then the tissue's own step.
   void step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
             const std::vector<RodTether>& on_thread, Observation& o) noexcept;
@@ -28,6 +31,7 @@ class VesselScene {
   const VesselModel& model_;
   VesselWall wall_;
   NeedleTracks tracks_;
+  VesselContact contact_;
   WallState first_;
 };
 

@@ -1,3 +1,5 @@
 foreach(name brain_scene cortex fixtures measured_model observe pull_test scene_file state_hash world)
   filum_test(world/${name})
 endforeach()
+filum_test(world/needle_scene)
+filum_test(world/vessel_scene)

@@ -8,6 +8,7 @@ import { Brain } from "./brain";
 import { FlatShadows } from "./flat_shadows";
 import { Instrument } from "./instruments";
 import { Laboratory } from "./laboratory";
+import { Needle, Tissue } from "./needle";
 import { kSheet, paintedMaterials, physicalMaterials, type Materials } from "./materials";
 import { ThreadTube } from "./thread";
 
@@ -27,6 +28,8 @@ export class Stage {
   private thread: ThreadTube | null = null;
   private brain: Brain | null = null;
   private laboratory: Laboratory | null = null;
+  private needle: Needle | null = null;
+  private tissue: Tissue | null = null;
   private readonly points: { array: Float64Array } = { array: new Float64Array(0) };
   private gaps: number[] = [];
   private threadRadius = 0.0125;
@@ -94,6 +97,10 @@ export class Stage {
     this.content.add(this.thread.mesh);
     this.laboratory = new Laboratory(message, this.materials);
     this.content.add(this.laboratory.group);
+    this.needle = message.needle ? new Needle(message.needle, this.materials) : null;
+    if (this.needle) this.content.add(this.needle.mesh);
+    this.tissue = message.tissue ? new Tissue(message.tissue, this.painted) : null;
+    if (this.tissue) this.content.add(this.tissue.group);
     this.flatShadows.follow(this.content);
   }
 
@@ -109,6 +116,8 @@ export class Stage {
     this.brain?.update(frame);
     for (let i = 0; i < this.instruments.length && i < frame.tools.length; ++i) this.instruments[i].update(frame.tools[i]);
     this.laboratory?.update(frame);
+    if (frame.needle) this.needle?.update(frame.needle);
+    if (frame.tissue) this.tissue?.update(frame.tissue);
   }
 
   /// Light follows the microscope: an oblique lamp beside the objective for the shadows and a weak one along the view.
@@ -146,6 +155,8 @@ export class Stage {
     this.thread = null;
     this.brain = null;
     this.laboratory = null;
+    this.needle = null;
+    this.tissue = null;
   }
 
   private addSheet(): void {

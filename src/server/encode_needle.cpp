@@ -1,0 +1,84 @@
+#include "server/encode_needle.h"
+
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace filum {
+namespace {
+
+using nlohmann::json;
+
+void append(std::string& out, const double* x, int n, int digits) {
+  out.push_back('[');
+  for (int i = 0; i < n; ++i) {
+    char buffer[32];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, std::isfinite(x[i]) ? x[i] : 0.0, std::chars_format::general, digits);
+    if (i > 0) out.push_back(',');
+    out.append(buffer, end.ptr);
+  }
+  out.push_back(']');
+}
+
+const char* word(PassObservation::State state) {
+  switch (state) {
+    case PassObservation::State::open:
+      return "open";
+    case PassObservation::State::needle:
+      return "needle";
+    case PassObservation::State::thread:
+      return "thread";
+    case PassObservation::State::pulled_out:
+      return "pulled-out";
+    case PassObservation::State::torn:
+      return "torn";
+  }
+  return "open";
+}
+
+}  // namespace
+
+json needle_scene_json(const NeedleDescription& n) {
+  if (!n.present) return nullptr;
+  return {{"name", n.name}, {"wire_radius", n.wire_radius}, {"bend_radius", n.bend_radius}, {"angle", n.angle}, {"taper", n.taper}};
+}
+
+json tissue_scene_json(const TissueDescription& t) {
+  if (t.triangles.empty()) return nullptr;
+  json triangles = json::array(), rest = json::array();
+  for (const auto& corners : t.triangles)
+    for (const int i : corners) triangles.push_back(i);
+  for (Eigen::Index k = 0; k < t.rest.size(); ++k) rest.push_back(std::round(t.rest.data()[k] * 1e8) / 1e8);
+  return {{"name", t.name}, {"kind", t.kind}, {"thickness", t.thickness}, {"triangles", triangles}, {"rest", rest}};
+}
+
+std::string needle_frame_text(const NeedleObservation& n) {
+  if (!n.present) return "null";
+  const double wxyz[4] = {n.X_WN.q.w(), n.X_WN.q.x(), n.X_WN.q.y(), n.X_WN.q.z()};
+  std::string out = "{\"pose\":{\"position\":";
+  append(out, n.X_WN.p.data(), 3, 8);
+  out += ",\"quaternion\":";
+  append(out, wxyz, 4, 8);
+  out += "},\"held\":[";
+  for (std::size_t i = 0; i < n.held.size(); ++i) out.append(i > 0 ? "," : "").append(n.held[i] ? "true" : "false");
+  return out + "]}";
+}
+
+std::string tissue_frame_text(const TissueObservation& t) {
+  if (t.n == 0) return "null";
+  std::string out = "{\"positions\":";
+  append(out, t.positions.data(), static_cast<int>(t.positions.size()), 6);
+  out += ",\"passes\":[";
+  for (int k = 0; k < t.n_passes; ++k) {
+    const PassObservation& p = t.passes[static_cast<std::size_t>(k)];
+    out.append(k > 0 ? ",{\"state\":\"" : "{\"state\":\"").append(word(p.state)).append("\",\"entry\":");
+    append(out, p.entry_W.data(), 3, 6);
+    out += ",\"exit\":";
+    if (p.out) append(out, p.exit_W.data(), 3, 6);
+    else out += "null";
+    out += "}";
+  }
+  return out + "]}";
+}
+
+}  // namespace filum

@@ -1,0 +1,56 @@
+#pragma once
+// Thread and jaws against the surface of the tissue, staggered with its step: forces push back what has come through or into the
+// surface, and the tissue gets the opposite loads.
+//
+// Thread: a node, or the middle of an edge, that crosses the surface inwards in a step is remembered with the place where it crossed
+// (so that it cannot come out on the far side, however fast it goes) and is pushed back out along the normal there, with Coulomb
+// friction, until it is outside. Where a track holds the thread nothing is looked for.
+// Jaws: spheres along them, k depth along the normal of the nearest face.
+// Neglects: thickness of the thread, thread across the rim between two samples, jaws faster than their radius a step (75 mm/s).
+// Test: vessel_contact_test.
+
+#include <array>
+#include <vector>
+
+#include "physics/implicit_rod.h"
+#include "physics/instrument.h"
+#include "physics/needle_track.h"
+
+namespace filum {
+
+/// A point of the thread that pushes against the surface. Part of the state.
+struct ThreadTouch {
+  double arc = 0.0;            // [m], of the thread
+  WallPoint at;                // of the surface
+  Vec3 normal = Vec3::UnitZ();  // outward, when last looked at
+  double load = 0.0;           // [N], normal, in the last step
+};
+inline constexpr int kMostTouches = 48;
+
+struct TouchState {
+  std::int32_t n = 0;
+  std::array<ThreadTouch, kMostTouches> touches;
+};
+
+class VesselContact {
+ public:
+  explicit VesselContact(int thread_capacity);
+
+  double stiffness = 200.0;    // [N/m], of a touch
+  double friction = 0.2;       // [-], thread on tissue
+
+  void hold(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread, std::vector<RodTether>& on_thread) noexcept;
+  void follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
+              const std::vector<RodTether>& on_thread) noexcept;
+  /// Jaws at their present poses; adds to `force` [N] and `torque` [N m] on the tools.
+  void press(VesselWall& wall, const WallState& w, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states,
+             std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
+
+ private:
+  void look(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, double whole, double arc, const Vec3& before, const Vec3& now) const noexcept;
+
+  Points before_;              // [m], nodes at the start of the step
+  int first_ = 0;              // of its tethers
+};
+
+}  // namespace filum

@@ -1,0 +1,154 @@
+#include "physics/needle_track.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "evidence/track_rig.h"
+
+namespace filum {
+namespace {
+
+constexpr double kMove = 2e-6;
+
+bool drive_until(TrackRig& rig, const std::string& event, double most = 2e-3) {
+  for (double s = 0.0; s < most; s += kMove) {
+    rig.step(kMove);
+    if (event == rig.last_event()) return true;
+  }
+  return false;
+}
+
+TEST(NeedleTrack, PointGoesInAtItsThresholdAndNotBefore) {
+  RigOptions o;
+  o.track = plain_track(10e-3, 1e-3, 5.0);
+  TrackRig rig(o);
+  double most = 0.0;
+  while (rig.tracks().n == 0 && most < 20e-3) most = std::max(most, rig.step(kMove).force);
+  EXPECT_EQ(rig.tracks().n, 1);
+  EXPECT_GE(rig.event_force(), 10e-3);
+  EXPECT_LT(rig.event_force(), 14e-3);
+  EXPECT_NEAR(rig.tracks().tracks[0].bite_entry, o.bite, 12e-6);
+  EXPECT_NEAR(rig.tracks().tracks[0].entry_angle, 1.57, 0.02);
+}
+
+TEST(NeedleTrack, FlatNeedleSkidsInsteadOfGoingIn) {
+  RigOptions o;
+  o.angle = 0.2;  // below the least angle
+  o.track = plain_track(3e-3, 1e-3, 5.0);
+  TrackRig rig(o);
+  for (int k = 0; k < 150; ++k) rig.step(kMove);
+  EXPECT_EQ(rig.tracks().n, 0);
+}
+
+TEST(NeedleTrack, ForceGrowsByFrictionOverDepthAndTurnsRoundOnTheWayBack) {
+  RigOptions o;
+  o.track = plain_track(5e-3, 2e-3, 10.0);
+  TrackRig rig(o);
+  ASSERT_TRUE(drive_until(rig, "puncture"));
+  double in = 0.0;
+  for (int k = 0; k < 300; ++k) in = rig.step(kMove).force;
+  const double depth = rig.inserted();
+  EXPECT_GT(depth, 0.4e-3);
+  EXPECT_NEAR(in, 2e-3 + 10.0 * depth, 0.05 * in);
+  double out = 0.0;
+  for (int k = 0; k < 60; ++k) out = rig.step(-kMove).force;
+  EXPECT_NEAR(out, -10.0 * rig.inserted(), 0.15 * 10.0 * rig.inserted()) << "friction only: nothing is cut on the way back";
+}
+
+TEST(NeedleTrack, DrawnBackItLeavesNoStitch) {
+  RigOptions o;
+  o.track = plain_track(5e-3, 1e-3, 5.0);
+  TrackRig rig(o);
+  ASSERT_TRUE(drive_until(rig, "puncture"));
+  for (int k = 0; k < 100; ++k) rig.step(kMove);
+  for (int k = 0; k < 400; ++k) rig.step(-kMove);
+  EXPECT_EQ(rig.tracks().n, 0);
+  EXPECT_LT(rig.tracks().open, 0);
+}
+
+TEST(NeedleTrack, ComesOutOnTheFarSideAndHoldsTheNeedle) {
+  RigOptions o;
+  o.thickness = 0.3e-3;
+  o.track = plain_track(5e-3, 1e-3, 5.0);
+  TrackRig rig(o);
+  ASSERT_TRUE(drive_until(rig, "needle-out"));
+  for (int k = 0; k < 200; ++k) rig.step(kMove);
+  const NeedleTrack& t = rig.tracks().tracks[0];
+  EXPECT_EQ(t.out, 1);
+  EXPECT_NEAR(t.bite_exit, t.bite_entry, 10e-6);
+  EXPECT_NEAR(t.deep - t.shallow, 1.0, 1e-3) << "through the whole thickness";
+  EXPECT_NEAR(t.knots[0].strand - t.knots[static_cast<std::size_t>(t.n - 1)].strand, -o.thickness, 0.05 * o.thickness) << "the track keeps the tissue's length";
+}
+
+TEST(NeedleTrack, SmallBiteTearsAtItsLoadAndLetsGo) {
+  RigOptions o;
+  o.thickness = 0.3e-3;
+  o.bite = 0.15e-3;
+  o.track = plain_track(5e-3, 1e-3, 1.0);
+  o.track.tear = 100.0;  // 15 mN at this bite
+  TrackRig rig(o);
+  ASSERT_TRUE(drive_until(rig, "needle-out"));
+  double most = 0.0;
+  for (int k = 0; k < 1600 && rig.tracks().tracks[0].ended == 0; ++k) {
+    rig.step(0.0, 0.25 * kMove);
+    most = std::max(most, rig.tracks().tracks[0].pull);
+  }
+  EXPECT_EQ(rig.tracks().tracks[0].ended, 2);
+  EXPECT_NEAR(most, 15e-3, 2e-3);
+}
+
+TEST(NeedleTrack, SawingWidensTheHole) {
+  RigOptions o;
+  o.thickness = 0.3e-3;
+  o.bend_radius = 10e-3;  // a curved needle on a straight way presses against its track
+  o.track = plain_track(5e-3, 1e-3, 1.0);
+  o.track.wear = 0.1;
+  TrackRig rig(o);
+  ASSERT_TRUE(drive_until(rig, "needle-out"));
+  const double before = rig.tracks().tracks[0].hole;
+  for (int k = 0; k < 150; ++k) rig.step(kMove);
+  EXPECT_GT(rig.tracks().tracks[0].hole, before);
+}
+
+/// The rule of the seed paper, Fig. 4: a node C of the vessel follows the nearest node M_i of the needle, until the spring from its
+/// anchor A to M_{i-1} is much longer than that to M_{i+1}; then it goes over to the next node.
+int follow_nodes(int i, const Vec3& anchor, const std::vector<Vec3>& needle, double much) {
+  while (i > 0 && i + 1 < static_cast<int>(needle.size()) &&
+         (needle[static_cast<std::size_t>(i + 1)] - anchor).norm() > much * (needle[static_cast<std::size_t>(i - 1)] - anchor).norm())
+    --i;
+  return i;
+}
+
+TEST(NeedleTrack, NodeRuleOfTheSeedGoesInStairsTheTrackDoesNot) {
+  RigOptions o;
+  o.track = plain_track(5e-3, 1e-3, 5.0);
+  TrackRig rig(o);
+  ASSERT_TRUE(drive_until(rig, "puncture"));
+  constexpr int kNodes = 20;
+  constexpr double kSpacing = 0.2e-3;
+  const double L = kSpacing * (kNodes - 1);
+  int node = kNodes - 2;  // the last but one: its two neighbours are compared
+  double inserted = 0.0, worst_rule = 0.0, worst_track = 0.0;
+  int changes = 0;
+  double before = rig.inserted();
+  for (int k = 0; k < 350; ++k) {
+    rig.step(kMove);
+    inserted += kMove;
+    std::vector<Vec3> needle;
+    for (int i = 0; i < kNodes; ++i) needle.emplace_back(0, 0, -(kSpacing * i - L + kSpacing) - inserted);  // along -z, anchor at 0
+    const int next = follow_nodes(node, Vec3::Zero(), needle, 1.5);
+    changes += node - next;
+    node = next;
+    const double by_rule = (kNodes - 2 - node) * kSpacing;
+    worst_rule = std::max(worst_rule, std::abs(by_rule - inserted));
+    worst_track = std::max(worst_track, std::abs(rig.inserted() - before - inserted));
+  }
+  EXPECT_GE(changes, 3) << "the vessel's node goes over from needle node to needle node";
+  EXPECT_GT(worst_rule, 0.3 * kSpacing) << "what is in the hole jumps by whole needle edges";
+  EXPECT_LT(worst_track, 10e-6) << "the track slides continuously, up to the give of its friction";
+}
+
+}  // namespace
+}  // namespace filum

@@ -1,0 +1,139 @@
+#include "training/needle_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace filum {
+namespace {
+
+constexpr double kDt = 2e-3, kRightAngle = 1.5707963267948966;
+
+NeedleTask loading() {
+  NeedleTask task;
+  NeedleGoal pick, load, present;
+  pick.kind = NeedleGoal::Kind::pick;
+  load.kind = NeedleGoal::Kind::load;
+  load.tool = 1;
+  load.low = 0.5;
+  load.high = 0.75;
+  load.angle = 0.26;
+  load.seconds = 0.1;
+  present.kind = NeedleGoal::Kind::present;
+  present.at = Vec3(1e-3, 0, 0);
+  present.within = 0.2e-3;
+  present.seconds = 0.1;
+  task.goals = {pick, load, present};
+  return task;
+}
+
+Observation field() {
+  Observation o;
+  o.n_tools = 2;
+  o.needle.present = true;
+  return o;
+}
+
+void watch(NeedleWatch& w, const Observation& o, double seconds, std::vector<TaskEvent>& events) {
+  for (double t = 0; t < seconds; t += kDt) w.observe(o, kDt, true, events);
+}
+
+TEST(NeedleWatch, GoalsAreMetInTurnAndHeldAsLongAsAskedFor) {
+  NeedleWatch w(loading(), {});
+  std::vector<TaskEvent> events;
+  Observation o = field();
+  watch(w, o, 0.2, events);
+  EXPECT_EQ(w.step(), 0);
+  o.needle.held[0] = true;
+  o.needle.X_WN.p.z() = 2e-3;
+  watch(w, o, 0.01, events);
+  EXPECT_EQ(w.step(), 1);
+  o.needle.held[1] = true;  // both hold it: not loaded yet
+  o.needle.grip_share[1] = 0.6;
+  o.needle.grip_angle[1] = kRightAngle - 0.1;
+  watch(w, o, 0.3, events);
+  EXPECT_EQ(w.step(), 1);
+  o.needle.held[0] = false;
+  watch(w, o, 0.05, events);
+  EXPECT_EQ(w.step(), 1) << "not yet long enough";
+  watch(w, o, 0.1, events);
+  EXPECT_EQ(w.step(), 2);
+  o.needle.point_W = Vec3(1e-3, 0.1e-3, 0);
+  watch(w, o, 0.2, events);
+  EXPECT_TRUE(w.done());
+  EXPECT_EQ(events.size(), 3u);
+  const NeedleReport r = w.report();
+  EXPECT_NEAR(r.angle_error, 0.1, 1e-6);
+  EXPECT_NEAR(r.share, 0.6, 1e-9);
+  EXPECT_NEAR(r.present_error, 0.1e-3, 1e-9);
+}
+
+TEST(NeedleWatch, WrongPlaceOrAngleIsNotLoaded) {
+  for (const bool place : {true, false}) {
+    NeedleWatch w(loading(), {});
+    std::vector<TaskEvent> events;
+    Observation o = field();
+    o.needle.held[0] = true;
+    o.needle.X_WN.p.z() = 2e-3;
+    watch(w, o, 0.01, events);
+    o.needle.held = {false, true, false};
+    o.needle.grip_share[1] = place ? 0.2 : 0.6;
+    o.needle.grip_angle[1] = place ? kRightAngle : kRightAngle - 0.5;
+    watch(w, o, 1.0, events);
+    EXPECT_EQ(w.step(), 1);
+  }
+}
+
+TEST(NeedleWatch, CountsTakesDropsAndWholeStitches) {
+  NeedleTask task;
+  NeedleGoal pass, draw;
+  pass.kind = NeedleGoal::Kind::pass;
+  pass.passes = 2;
+  draw.kind = NeedleGoal::Kind::draw;
+  draw.passes = 2;
+  draw.tail = 5e-3;
+  task.goals = {pass, draw};
+  task.has_tissue = true;
+  SceneDescription scene;
+  scene.tissue.thickness = 0.15e-3;
+  scene.tissue.cut_along = Vec3::UnitX();
+  NeedleWatch w(task, scene);
+  std::vector<TaskEvent> events;
+  Observation o = field();
+  o.n_events = 2;
+  o.events[0].name = "needle-taken";
+  o.events[1].name = "needle-dropped";
+  w.observe(o, kDt, true, events);
+  o.n_events = 0;
+  o.tissue.n_passes = 2;
+  for (int k = 0; k < 2; ++k) {
+    PassObservation& p = o.tissue.passes[static_cast<std::size_t>(k)];
+    p.out = true;
+    p.side = k;
+    p.state = PassObservation::State::needle;
+    p.bite_entry = p.bite_exit = 0.3e-3;
+    p.depth_share = 1.0;
+    p.entry_rest = p.exit_rest = Vec3(0, k == 0 ? -0.3e-3 : 0.3e-3, 0);
+    p.peak_force = 4e-3;
+  }
+  w.observe(o, kDt, true, events);
+  EXPECT_EQ(w.step(), 0) << "the needle is still in it";
+  for (int k = 0; k < 2; ++k) o.tissue.passes[static_cast<std::size_t>(k)].state = PassObservation::State::thread;
+  o.tissue.passes[0].arc = 9e-3;
+  w.observe(o, kDt, true, events);
+  EXPECT_EQ(w.step(), 1);
+  o.tissue.passes[0].arc = 4e-3;
+  w.observe(o, kDt, true, events);
+  EXPECT_TRUE(w.done());
+  const NeedleReport r = w.report();
+  EXPECT_EQ(r.takes, 1);
+  EXPECT_EQ(r.drops, 1);
+  ASSERT_EQ(r.stitches.size(), 1u);
+  EXPECT_TRUE(r.lapses.empty());
+  EXPECT_NEAR(needle_value(Measure::bite_widest, r), 2.0, 1e-9);
+  EXPECT_NEAR(needle_value(Measure::tissue_pull, r), 4e-3, 1e-12);
+  EXPECT_TRUE(std::isnan(needle_value(Measure::needle_angle, r)));
+}
+
+}  // namespace
+}  // namespace filum
