@@ -42,12 +42,16 @@ void add_simulated_grip(const RecordingReader& recording, RecordedSession& sessi
   }
 }
 
-RecordedSession open(const std::string& file) {
+}  // namespace
+
+RecordedSession open_session(const std::string& file) {
   const RecordingReader recording(file);
   RecordedSession session = read_session(recording);
   add_simulated_grip(recording, session);
   return session;
 }
+
+namespace {
 
 std::string shown(const nlohmann::ordered_json& value, double scale) {
   if (!value.is_number()) return "not resolved";
@@ -94,9 +98,9 @@ void write(const char* option, const std::string& path, const std::string& text)
 
 int run(const AnalyseOptions& o) {
   AnalysisInput input;
-  for (const std::string& file : o.files) input.sessions.push_back(open(file));
-  if (!o.clamped.empty()) input.clamped = open(o.clamped);
-  for (const std::string& file : o.reference) input.reference.push_back(open(file));
+  for (const std::string& file : o.files) input.sessions.push_back(open_session(file));
+  if (!o.clamped.empty()) input.clamped = open_session(o.clamped);
+  for (const std::string& file : o.reference) input.reference.push_back(open_session(file));
   const AnalysisReport report = analyse(input, program_text());
   if (!o.plot.empty()) write("--plot", o.plot, scatter_svg(report.panels, o.files));
   if (!o.page.empty()) write("--page", o.page, report_page(report));

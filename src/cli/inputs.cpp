@@ -31,9 +31,12 @@ std::unique_ptr<Device> open_recording(const std::string& file) {
   return std::make_unique<ReplayDevice>("replay " + std::filesystem::path(file).filename().string(), std::move(samples));
 }
 
-std::unique_ptr<Device> open_forceps(const std::string& port, const std::string& root) {
-  return std::make_unique<SerialForceps>(port, ForcepsCalibration::load(root + "/models/forceps/default.yaml"));
+std::unique_ptr<Device> open_forceps(const std::string& port, const std::string& calibration) {
+  return std::make_unique<SerialForceps>(port, ForcepsCalibration::load(calibration));
 }
+
+/// The user's own calibration, else the one of the handle as built.
+std::string calibration_file(const std::string& chosen, const std::string& root) { return chosen.empty() ? root + "/models/forceps/default.yaml" : chosen; }
 
 struct HostPort {
   std::string address = "127.0.0.1";
@@ -53,9 +56,9 @@ HostPort host_port(const std::string& text) {
   return at;
 }
 
-std::unique_ptr<Device> open_hand_device(const std::string& name, const std::string& root) {
+std::unique_ptr<Device> open_hand_device(const std::string& name, const std::string& calibration) {
   const auto after = [&](const char* prefix) { return name.substr(std::string(prefix).size()); };
-  if (name.starts_with("serial:")) return open_forceps(after("serial:"), root);
+  if (name.starts_with("serial:")) return open_forceps(after("serial:"), calibration);
   if (name.starts_with("haptic:")) {
     const HostPort at = host_port(after("haptic:"));
     return std::make_unique<HapticLink>(at.address, at.port);
@@ -68,11 +71,11 @@ std::unique_ptr<Device> open_hand_device(const std::string& name, const std::str
 }
 
 /// Devices that hands move, joined by "+": the first is believed where two measure the same.
-InputDevices open_hands(const std::string& input, const std::string& root, double motion_scale) {
+InputDevices open_hands(const std::string& input, double motion_scale, const std::string& calibration) {
   InputDevices result;
   for (std::size_t from = 0; from <= input.size();) {
     const std::size_t plus = std::min(input.find('+', from), input.size());
-    auto device = open_hand_device(input.substr(from, plus - from), root);
+    auto device = open_hand_device(input.substr(from, plus - from), calibration);
     if (!device) throw InputError("--input", "input", input.substr(from, plus - from), "serial:PATH, haptic:PORT or igtl:PORT");
     result.description += (result.description.empty() ? "" : " and ") + device->name();
     result.devices.push_back(std::move(device));
@@ -95,8 +98,9 @@ bool names_hands(const std::string& input) {
 
 }  // namespace
 
-InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task, double motion_scale) {
-  if (names_hands(input)) return open_hands(input, root, motion_scale);
+InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task, double motion_scale, const std::string& calibration) {
+  if (!calibration.empty() && input.find("serial:") == std::string::npos) throw InputError("--forceps", "calibration", calibration, "--input serial:PATH beside it");
+  if (names_hands(input)) return open_hands(input, motion_scale, calibration_file(calibration, root));
   InputDevices result;
   result.scripted = true;
   if (input == "demo") {
@@ -115,13 +119,13 @@ InputDevices open_inputs(const std::string& input, const std::string& root, cons
   return result;
 }
 
-InputDevices open_live_inputs(const std::string& serial_port, const std::string& root) {
+InputDevices open_live_inputs(const std::string& serial_port, const std::string& root, const std::string& calibration) {
   InputDevices result;
   auto pointer = std::make_unique<PointerDevice>();
   result.pointer = pointer.get();
   result.description = "pointer";
   if (!serial_port.empty()) {
-    result.devices.push_back(open_forceps(serial_port, root));
+    result.devices.push_back(open_forceps(serial_port, calibration_file(calibration, root)));
     result.description = "serial " + serial_port + " and pointer";
   }
   result.devices.push_back(std::move(pointer));

@@ -20,10 +20,11 @@ struct InputDevices {
 };
 
 /// "demo", "serial:PATH", "haptic:[ADDRESS:]PORT", "igtl:[ADDRESS:]PORT", several of them joined by "+", a demonstration (*.yaml) or a recording. Throws InputError.
-InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task, double motion_scale = 1.0);
+/// `calibration`: file of the forceps, empty: models/forceps/default.yaml; refused where no forceps is read.
+InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task, double motion_scale = 1.0, const std::string& calibration = "");
 
 /// The pointer of the browser alone, or the forceps on `serial_port` with the pointer for what they do not measure.
-InputDevices open_live_inputs(const std::string& serial_port, const std::string& root);
+InputDevices open_live_inputs(const std::string& serial_port, const std::string& root, const std::string& calibration = "");
 
 const char* name_of(DeviceState state) noexcept;
 

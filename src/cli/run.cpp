@@ -16,7 +16,7 @@ namespace {
 
 struct RunOptions {
   CommonOptions common;
-  std::string task, input = "demo", model, record;
+  std::string task, input = "demo", model, record, forceps;
   bool real_time = false;
   double motion_scale = 1.0;
   int stream_port = 0;     // of OpenIGTLink, 0 none
@@ -48,7 +48,7 @@ void print_text(const LiveOutcome& outcome) {
 
 int run(const RunOptions& o) {
   Setup setup = load_setup(o.common.root, o.task, o.model);
-  InputDevices inputs = open_inputs(o.input, o.common.root, o.task, o.motion_scale);
+  InputDevices inputs = open_inputs(o.input, o.common.root, o.task, o.motion_scale, o.forceps);
   std::unique_ptr<Recorder> recorder;
   if (!o.record.empty()) recorder = make_recorder(o.record, setup, inputs.description);
   LiveOptions options;
@@ -91,7 +91,8 @@ void add_run(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("run", "Run a task without a browser and print its score");
   command->add_option("task", o->task, "Name of the task, e.g. knot-square (see filum list)")->required();
   command->add_option("--input", o->input, "demo, serial:PATH, haptic:[ADDRESS:]PORT, igtl:[ADDRESS:]PORT, several joined by +, a demonstration (*.yaml) or a recording")->capture_default_str();
-  command->add_option("--model", o->model, "Suture model to use instead of the scene's");
+  command->add_option("--model", o->model, "Suture or brain file to use instead of the scene's, or a model.yaml of filum reconcile");
+  command->add_option("--forceps", o->forceps, "Calibration of the forceps on serial:PATH (from filum calibrate forceps)");
   command->add_option("--record", o->record, "Store the session in this new file");
   command->add_option("--motion-scale", o->motion_scale, "Movement in the scene over that of the hand")->check(CLI::Range(0.001, 10.0))->capture_default_str();
   command->add_option("--igtl-out", o->stream_port, "Send the tools' poses by OpenIGTLink from this port of this machine")->check(CLI::Range(1, 65535));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "analysis/recorded_series.h"
 #include "cli/setup.h"
 #include "session/recorder.h"
 #include "session/recording_reader.h"
@@ -38,6 +39,9 @@ struct Rescored {
   Result result;
   ReplayResult replay;
 };
+
+/// A recording ready for analysis; where no device measured the squeeze, that of the simulation, replayed.
+RecordedSession open_session(const std::string& file);
 
 /// Replays a recording to its end and scores it anew.
 Rescored rescore(const RecordingReader& recording);

@@ -45,6 +45,9 @@ void add_train(CLI::App& app, Action& action) {
   command->add_option("--port", o->trainer.port, "Port; 0 takes any free one")->capture_default_str();
   command->add_option("--address", o->trainer.address, "Address to listen on")->capture_default_str();
   command->add_option("--serial", o->trainer.serial_port, "Serial port of the forceps, e.g. /dev/ttyACM0");
+  command->add_option("--forceps", o->trainer.calibration, "Calibration of the forceps (from filum calibrate forceps)");
+  command->add_option("--model", o->trainer.model_file, "A model.yaml of filum reconcile, for the tasks whose scene can show it");
+  command->add_option("--datasets", o->trainer.datasets, "Folder of measurements for reconcile in the browser (default: datasets below the store)");
   command->add_option("--store", o->trainer.store_folder, "Folder of the recordings (default: your data folder)");
   o->trainer.viewer_folder = std::string(source_folder()) + "/src/viewer/dist";
   command->add_option("--viewer", o->trainer.viewer_folder, "Folder of the built viewer")->capture_default_str();

@@ -15,6 +15,21 @@ namespace {
 constexpr double kHardestSqueeze = 0.25;  // [rad] beyond closure: 3 N with the instruments' grip stiffness
 constexpr std::size_t kMostCommands = 256;
 
+/// A model that no task can take is refused before anybody waits for it.
+void check_model(const TrainerOptions& options) {
+  if (options.model_file.empty()) return;
+  std::string last;
+  for (const std::string& task : task_names(options.root)) {
+    try {
+      load_setup(options.root, task, options.model_file);
+      return;
+    } catch (const InputError& error) {
+      last = error.what();
+    }
+  }
+  throw InputError("--model", "model", options.model_file, "a model that a task can take (the last one said: " + last + ")");
+}
+
 HelloView hello_of(const TrainerOptions& options) {
   std::vector<std::string> problems;
   HelloView hello;
@@ -78,7 +93,11 @@ std::vector<DeviceView> device_views_of(const HapticReport& hands, const std::ve
   return views;
 }
 
-Trainer::Trainer(TrainerOptions options) : options_(std::move(options)) {
+Trainer::Trainer(TrainerOptions options)
+    : options_(std::move(options)),
+      lab_({options_.root, options_.datasets.empty() ? options_.store_folder + "/datasets" : options_.datasets, options_.store_folder, options_.serial_port, options_.calibration},
+           [this](const std::string& session) { return recording_of(session); }) {
+  check_model(options_);
   ServerOptions server;
   server.address = options_.address;
   server.port = options_.port;
@@ -103,6 +122,13 @@ void Trainer::open_store() {
     store_warning_ = std::string("Sessions are NOT being stored: ") + error.what();
   }
   view_.warning = store_warning_;
+}
+
+std::optional<std::string> Trainer::recording_of(const std::string& session) {
+  const std::lock_guard lock(store_mutex_);
+  const auto entry = store_ ? store_->find(session) : std::nullopt;
+  if (!entry) return std::nullopt;
+  return store_->file_of(entry->id);
 }
 
 void Trainer::publish_state(const std::string& state) {
@@ -217,12 +243,14 @@ void Trainer::start_task(const StartMessage& start) {
   view_.recording = false;
   view_.session.clear();
   publish_state("loading");
-  Setup setup = load_setup(options_.root, start.task);
+  Setup setup = load_setup(options_.root, start.task, options_.model_file);
   if (start.input == "device" && options_.serial_port.empty()) {
     throw InputError("start", "input", "device", "a trainer started with --serial PATH");
   }
+  if (start.input == "device" && lab_.calibrating()) throw InputError("start", "input", "device", "to end the calibration first: it uses the forceps");
+  lab_.port_in_use(start.input == "device");
   InputDevices inputs = start.input == "demo" ? open_inputs("demo", options_.root, start.task)
-                                              : open_live_inputs(start.input == "device" ? options_.serial_port : "", options_.root);
+                                              : open_live_inputs(start.input == "device" ? options_.serial_port : "", options_.root, lab_.calibration());
   start_session(start, std::move(setup), std::move(inputs));
 }
 
@@ -265,6 +293,7 @@ void Trainer::end_session() {
   set_pointer(nullptr);
   const LiveOutcome outcome = session_->wait();
   session_.reset();
+  lab_.port_in_use(false);
   const Result& r = outcome.result;
   if (recorder_) {
     const RecorderStatus status = recorder_->status();

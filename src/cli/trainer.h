@@ -16,6 +16,7 @@
 
 #include "cli/live_session.h"
 #include "cli/replay_session.h"
+#include "cli/trainer_lab.h"
 #include "server/server.h"
 #include "session/store.h"
 
@@ -24,10 +25,13 @@ namespace filum {
 struct TrainerOptions {
   std::string root;
   std::string serial_port;        // empty: no forceps
+  std::string calibration;        // of the forceps, empty: as built
+  std::string model_file;         // of filum reconcile, empty: the scenes' own
   std::string address = "127.0.0.1";
   std::uint16_t port = 8137;
   std::string viewer_folder;
   std::string store_folder;
+  std::string datasets;           // of reconcile, empty: store_folder/datasets
 };
 
 class Trainer final : public ServerHost {
@@ -46,9 +50,12 @@ class Trainer final : public ServerHost {
   void command(const ClientMessage& message) override;
   void controlled(bool by_somebody) override;
   std::optional<std::string> api(std::string_view path) override;
+  std::optional<std::string> post(std::string_view path, const std::string& body) override { return lab_.post(path, body); }
+  std::optional<Document> document(std::string_view path) override { return lab_.document(path); }
 
  private:
   void open_store();
+  std::optional<std::string> recording_of(const std::string& session);
   void carry_out(const ClientMessage& message);
   void look_after();
   void start_task(const StartMessage& start);
@@ -67,6 +74,7 @@ class Trainer final : public ServerHost {
   std::optional<Store> store_;
   std::string store_warning_;
   std::map<std::string, std::string> titles_;  // by task; constant
+  TrainerLab lab_;
   std::unique_ptr<Server> server_;
   TrainerView view_;                    // of run()'s thread
 

@@ -42,7 +42,7 @@ std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::e
 
 std::optional<std::string> Trainer::api(std::string_view path) {
   constexpr std::string_view kSessions = "/api/sessions";
-  if (!path.starts_with(kSessions)) return std::nullopt;
+  if (!path.starts_with(kSessions)) return lab_.get(path);
   path.remove_prefix(kSessions.size());
   const std::lock_guard lock(store_mutex_);
   const auto title_of = [this](const std::string& task) {

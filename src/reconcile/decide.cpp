@@ -64,7 +64,7 @@ void add_squares(const RigModel& model, const Noise& noise, const Fit& f, double
 }
 
 /// Predicts what was not fitted: the trials marked hold_out, else every protocol in turn.
-Challenge challenge(const Search& search, const Fit& base, const Fit& named, int threads) {
+Challenge challenge(const Search& search, const Fit& base, const Fit& named, const Options& options) {
   const Fitter& all = search.fitter();
   const Dataset& d = all.model().data();
   std::vector<bool> held(d.trials.size());
@@ -74,7 +74,8 @@ Challenge challenge(const Search& search, const Fit& base, const Fit& named, int
   Challenge out;
   out.how = marked ? "trials marked hold_out" : parts.empty() ? "nothing can be held out" : "each protocol in turn";
   std::vector<Fit> b(parts.size()), a(parts.size());
-  parallel(threads, 2 * parts.size(), [&](std::size_t k) {
+  parallel(options.threads, 2 * parts.size(), [&](std::size_t k) {
+    stop_if_cancelled(options);
     const std::size_t i = k / 2;
     const Fit& start = k % 2 == 0 ? base : named;
     Fit& result = k % 2 == 0 ? b[i] : a[i];
@@ -178,15 +179,16 @@ std::set<Effect> common(const Fit& winner, const std::vector<const Fit*>& rivals
 
 void say(Result& r, const std::string& sentence) { r.sentence = sentence; }
 
-void name(const Search& search, const Fit& winner, Result& r, int threads) {
+void name(const Search& search, const Fit& winner, Result& r, const Options& options) {
   const auto rivals = rivals_of(search, winner, r.rules, r.not_testable);
   const Fitter& fitter = search.fitter();
-  const Challenge c = challenge(search, search.base(), winner, threads);
+  const Challenge c = challenge(search, search.base(), winner, options);
   r.held_out = c.gap;
   r.held_out_how = c.how;
   const bool holds = !c.done || c.explained >= r.rules.held_out;
   const double explained = search.explained(winner);
   r.effects = effect_estimates(fitter, winner, search.dispersion());
+  for (const Fit& other : search.other_forms(winner, r.rules.tie)) widen_by_forms(r.effects, effect_estimates(fitter, other, search.dispersion()));
   r.baseline = baseline_estimates(fitter, winner, search.dispersion());
   for (const Fit& f : search.candidates())
     if (&f != &winner && r.rivals.size() < 6) r.rivals.push_back({effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""});
@@ -226,7 +228,7 @@ void name(const Search& search, const Fit& winner, Result& r, int threads) {
   r.next = next_experiment(fitter, winner, *rivals[0]);
 }
 
-void name_nothing(const Search& search, Result& r, int threads) {
+void name_nothing(const Search& search, Result& r, const Options& options) {
   const Structure s = search.structure(search.base());
   // what is left, averaged over the block length where it stands out and freed of the noise's own share, in parts of full scale
   double sum = 0.0;
@@ -238,7 +240,7 @@ void name_nothing(const Search& search, Result& r, int threads) {
         if (std::isfinite(mean)) sum += std::pow(mean / search.fitter().noise().output[c].full_scale, 2), ++n;
       }
   const bool seen = s.z > r.rules.structure && n > 0 && std::sqrt(sum / n * (1.0 - 1.0 / s.dispersion)) > r.rules.materiality;
-  const Challenge c = challenge(search, search.base(), search.base(), threads);
+  const Challenge c = challenge(search, search.base(), search.base(), options);
   r.held_out = c.gap;
   r.held_out_how = c.how;
   r.baseline = r.baseline_alone;
@@ -266,6 +268,7 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   r.structure_before = search.structure(search.base()).z;
   r.structure_after = search.structure(r.after).z;
   if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise);
+  r.residual_terms = describe(fitter.model(), r.before);
   if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after);
   list_tried(search, r, r.verdict == "effect" ? winner : nullptr);
 }
@@ -306,8 +309,8 @@ Result reconcile(const Dataset& d, const Options& options) {
     if (options.progress) options.progress("challenge", 0.85);
     r.baseline_alone = baseline_estimates(search.fitter(), search.base(), std::max(1.0, search.structure(search.base()).dispersion));
     const Fit* winner = choose(search, r.rules);
-    if (winner != nullptr) name(search, *winner, r, options.threads);
-    else name_nothing(search, r, options.threads);
+    if (winner != nullptr) name(search, *winner, r, options);
+    else name_nothing(search, r, options);
     finish(search, winner, r);
   }
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -29,6 +29,14 @@ double deviation(const Fit& f, std::size_t k, double dispersion) {
   return i < f.covariance.rows() ? std::sqrt(std::max(0.0, f.covariance(i, i)) * dispersion) : 0.0;
 }
 
+/// Share of a line that a clock blurs which strays by a twentieth of its step (contract: jitter is ordinary): exp((2 pi f s)^2/2) - 1.
+double line_blur(const Dataset& d, double frequency) {
+  std::vector<double> steps;
+  for (const Trial& t : d.trials) steps.push_back((t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1));
+  const double phase = 6.283185307179586 * frequency * 0.05 * median(steps);
+  return std::expm1(std::min(0.5 * phase * phase, 3.0));
+}
+
 /// Amplitude of the line of a form, mean over records and outputs, from the free columns.
 Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const std::vector<double>& p) {
   const Dataset& d = fitter.model().data();
@@ -58,10 +66,11 @@ Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const s
   double var = 0.0;
   for (const double a : all) var += (a - mid) * (a - mid) / std::max<double>(1.0, static_cast<double>(all.size()) - 1.0);
   const double half = kTwoSided * std::sqrt(var / static_cast<double>(std::max<std::size_t>(1, all.size()))) + 0.02 * mid;
+  const double blur = line_blur(d, p[0]);
   std::string unit = "-";
   for (const ChannelInfo& c : info(d.rig).channels)
     if (c.name == d.outputs[0]) unit = c.unit;
-  return {"amplitude", unit, mid, std::max(0.0, mid - half), mid + half};
+  return {"amplitude", unit, mid, std::max(0.0, mid - half), mid + half + blur * mid};
 }
 
 }  // namespace
@@ -112,6 +121,16 @@ std::vector<NamedEffect> effect_estimates(const Fitter& fitter, const Fit& fit, 
     out.push_back(std::move(named));
   }
   return out;
+}
+
+void widen_by_forms(std::vector<NamedEffect>& effects, const std::vector<NamedEffect>& others) {
+  for (NamedEffect& e : effects)
+    for (const NamedEffect& o : others) {
+      if (o.effect != e.effect) continue;
+      for (Estimate& p : e.parameters)
+        for (const Estimate& q : o.parameters)
+          if (q.name == p.name && q.unit == p.unit && std::isfinite(q.value)) p.low = std::min(p.low, q.value), p.high = std::max(p.high, q.value);
+    }
 }
 
 std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& noise) {

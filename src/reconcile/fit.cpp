@@ -323,11 +323,14 @@ void Fitter::complete(Fit& f, const std::vector<Global>& g) const {
     f.samples += static_cast<int>(r.back().size());
     columns += model_.free_columns(model_.data().trials[t], setting(f, i)).cols() * static_cast<Eigen::Index>(model_.data().outputs.size());
   }
-  f.parameters = static_cast<int>(g.size()) + static_cast<int>(columns);
+  f.parameters = static_cast<int>(columns);
   f.at_bound = false;
   for (const Global& p : g) {
+    // what is held within a hundredth (the depth of a layer that was read off, an angle that only scales) costs no evidence
+    if (p.form >= 0 && p.high - p.low <= 0.01 * std::abs(p.high)) continue;
+    ++f.parameters;
     const double v = get(f, p), low = p.logarithmic ? std::log(p.low) : p.low, high = p.logarithmic ? std::log(p.high) : p.high;
-    if (p.form >= 0 && high - low > 1e-6 * std::abs(high) && (v <= low + 1e-4 * (high - low) || v >= high - 1e-4 * (high - low))) f.at_bound = true;
+    if (p.form >= 0 && (v <= low + 1e-4 * (high - low) || v >= high - 1e-4 * (high - low))) f.at_bound = true;
   }
   solver.assemble(f, r);
   Eigen::MatrixXd S;

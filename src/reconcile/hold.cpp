@@ -2,7 +2,7 @@
 // told apart where they stand in the spectrum. Power in a band is judged by Whittle's likelihood (Whittle 1953): for N periodogram
 // values of mean q times the white level, 2 log L rises by 2 N (q - 1 - log q). A line has all of it in one bin, tremor has a band.
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 #include <unsupported/Eigen/FFT>
 
 #include <algorithm>
@@ -170,7 +170,38 @@ Gap gap_in(const std::vector<Spectrum>& all, const std::vector<Found>& found) {
   return n > 0 ? Gap{std::sqrt(before / n), std::sqrt(after / n)} : Gap{};
 }
 
-NamedEffect named(const Found& f) {
+/// Amplitude of a line by least squares at its own frequency, mean over records and outputs with weight; near half the sampling rate
+/// one of sine and cosine is hardly seen, and the weight says so.
+Estimate line_amplitude(const Dataset& d, const Fit& base, const Noise& noise, double frequency) {
+  double sum = 0.0, weight = 0.0, spread = 0.0;
+  std::vector<std::pair<double, double>> all;
+  for (std::size_t i = 0; i < base.residual.size(); ++i)
+    for (std::size_t c = 0; c < base.residual[i].size(); ++c) {
+      Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+      Eigen::Vector2d b = Eigen::Vector2d::Zero();
+      for (Eigen::Index n = 0; n < base.residual[i][c].size(); ++n) {
+        if (!std::isfinite(base.residual[i][c][n])) continue;
+        const double phase = 6.283185307179586 * frequency * (d.trials[i].time[n] - d.trials[i].time[0]);
+        const Eigen::Vector2d v(std::cos(phase), std::sin(phase));
+        A += v * v.transpose();
+        b += v * base.residual[i][c][n];
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(A);
+      const double least = eigen.eigenvalues()[0];
+      if (least <= 1e-6 * A.trace()) continue;
+      const double w = least / std::pow(noise.output[c].sigma, 2), a = A.ldlt().solve(b).norm();
+      all.emplace_back(a, w);
+      sum += w * a;
+      weight += w;
+    }
+  if (weight <= 0.0) return {"amplitude", "m", 0.0, 0.0, INFINITY};
+  const double mean = sum / weight;
+  for (const auto& [a, w] : all) spread += w * (a - mean) * (a - mean) / weight;
+  const double half = 1.96 * std::sqrt(1.0 / weight + spread / static_cast<double>(all.size())) + 0.02 * mean;
+  return {"amplitude", "m", mean, std::max(0.0, mean - half), mean + half};
+}
+
+NamedEffect named(const Found& f, const Estimate& line) {
   const double rms = std::sqrt(f.power), share = 1.96 / std::sqrt(std::max(2.0, 2.0 * f.bins));
   const double width = 0.5 * (f.high - f.low) / std::sqrt(std::max(1.0, 0.5 * f.bins));
   NamedEffect out{f.effect, "", {{"frequency", "Hz", f.frequency, f.frequency - 1.96 * width, f.frequency + 1.96 * width}}};
@@ -180,8 +211,7 @@ NamedEffect named(const Found& f) {
     out.parameters.push_back({"rms", "m", rms, rms * (1.0 - few), rms * (1.0 + few)});
   } else {
     out.form = f.form->text;
-    const double a = std::sqrt(2.0) * rms;
-    out.parameters.push_back({"amplitude", "m", a, a * (1.0 - share), a * (1.0 + share)});
+    out.parameters.push_back(line);
   }
   return out;
 }
@@ -272,7 +302,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
         r.effects.push_back({Effect::saturation, "clipped", {{"limit", "m", trial.at(d.outputs[c]).maxCoeff(), trial.at(d.outputs[c]).maxCoeff(), trial.at(d.outputs[c]).maxCoeff()}}});
   for (const Found& f : found) {
     Tried tried{{f.effect}, "", -f.evidence, 1.0, true, "taken"};
-    if (std::none_of(r.effects.begin(), r.effects.end(), [&](const NamedEffect& e) { return e.effect == f.effect; })) r.effects.push_back(named(f));
+    if (std::none_of(r.effects.begin(), r.effects.end(), [&](const NamedEffect& e) { return e.effect == f.effect; })) r.effects.push_back(named(f, line_amplitude(d, base, noise, f.frequency)));
     r.tried.push_back(tried);
   }
   if (t.evidence > 4.0 && std::none_of(found.begin(), found.end(), [](const Found& f) { return f.effect == Effect::physiological_tremor; }))

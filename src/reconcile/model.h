@@ -56,6 +56,9 @@ class RigModel {
   /// Whether stiffness differs from record to record, and whether the gain of the output is a nuisance of its own.
   virtual bool has_scale() const { return true; }
   virtual bool has_gain() const { return false; }
+  /// Samples at which the force falls at once. No sampling says when between two of them, so behind a sensor that lags each leaves a tail
+  /// exp(-t/tau) of free height: the lag is learnt from the shape of the tail, not from an instant that nobody knows.
+  virtual std::vector<int> drops(const Trial&) const { return {}; }
   /// Samples that are left out (beside an event whose instant no model can predict to the sample).
   virtual bool masked(const Trial&, int /*sample*/, int /*output*/) const { return false; }
   /// False for a baseline parameter that is read off the records' events rather than fitted; measured() then gives its value and spread.

@@ -60,6 +60,7 @@ class Needle final : public RigModel {
     const double half = 2.2 * std::sqrt(var / static_cast<double>(forces.size())) + 0.01 * mean;
     return {mean, mean - half, mean + half};
   }
+  std::vector<int> drops(const Trial& t) const override { return events_[static_cast<std::size_t>(&t - data().trials.data())].drops; }
   bool masked(const Trial& t, int sample, int) const override {
     const Events& e = events_[static_cast<std::size_t>(&t - data().trials.data())];
     return std::any_of(e.drops.begin(), e.drops.end(), [&](int d) { return std::abs(sample - d) <= e.beside; });
@@ -89,6 +90,9 @@ Events Needle::find(const Trial& t) {
     if (v != 0.0) sign = v > 0 ? 1.0 : -1.0;
     e.direction[i] = sign;
   }
+  // a layer gives way under a needle that advances; what falls when it stops is no rupture
+  const double travel = (x.maxCoeff() - x.minCoeff()) / n;  // [m], a sample
+  const auto advancing = [&](int i) { return i > 0 && e.direction[i] > 0 && x[i] - x[i - 1] > 0.1 * travel; };
   std::vector<double> steps;
   double low = 1e300, high = -1e300;
   for (int i = 0; i < n; ++i)
@@ -101,7 +105,7 @@ Events Needle::find(const Trial& t) {
   const int w = std::clamp(n / 60, 2, 8);
   Eigen::VectorXd fall = Eigen::VectorXd::Zero(n);
   for (int i = w; i + w < n; ++i) {
-    if (e.direction[i - w] < 0 || e.direction[i + w] < 0) continue;
+    if (!advancing(i - w + 1) || !advancing(i + w)) continue;
     std::vector<double> before, after;
     for (int k = 1; k <= w; ++k) {
       if (std::isfinite(y[i - k])) before.push_back(y[i - k]);

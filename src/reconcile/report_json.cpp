@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -5,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "reconcile/hereditary.h"
 #include "reconcile/report.h"
 
 namespace filum::reconcile {
@@ -19,6 +21,12 @@ Json json_of(const Estimate& e) { return {{"value", finite(e.value)}, {"unit", e
 Json json_of(const std::vector<Estimate>& all) {
   Json out = Json::object();
   for (const Estimate& e : all) out[e.name] = json_of(e);
+  return out;
+}
+
+Json json_of(const std::vector<Term>& terms) {
+  Json out = Json::array();
+  for (const Term& t : terms) out.push_back({{"term", t.name}, {"coefficient", finite(t.coefficient)}, {"stability", t.stability}});
   return out;
 }
 
@@ -79,11 +87,8 @@ Json report_json(const Dataset& d, const Result& r) {
   if (r.verdict == "effect") j["model_written"] = "model.yaml";
   j["seconds"] = r.seconds;
   j["sentence"] = r.sentence;
-  if (!r.shape.empty()) {
-    Json shape = Json::array();
-    for (const Term& t : r.shape) shape.push_back({{"term", t.name}, {"coefficient", finite(t.coefficient)}, {"stability", t.stability}});
-    j["shape"] = shape;
-  }
+  if (!r.shape.empty()) j["shape"] = json_of(r.shape);
+  if (!r.residual_terms.empty()) j["residual_terms"] = json_of(r.residual_terms);
   Json tried = Json::array();
   for (const Tried& t : r.tried) tried.push_back({{"effects", names(t.effects)}, {"form", t.form}, {"evidence", finite(-t.evidence)}, {"explained", finite(t.explained)}, {"why", t.why}});
   j["tried"] = tried;
@@ -93,6 +98,27 @@ Json report_json(const Dataset& d, const Result& r) {
   j["dataset_hash"] = hash;
   return j;
 }
+
+namespace {
+
+/// A relaxation that is not made of exponentials, as the sum of them that a scene can run.
+std::string spectrum_text(const NamedEffect& e) {
+  const auto of = [&](const char* name) {
+    const auto at = std::find_if(e.parameters.begin(), e.parameters.end(), [&](const Estimate& p) { return p.name == name; });
+    return at == e.parameters.end() ? 0.0 : at->value;
+  };
+  if (e.effect != Effect::viscoelastic_relaxation || of("order") <= 0.0) return "";
+  const Kernel k = fractional(of("g1"), of("tau1"), of("order"));
+  std::string out = "    prony:\n";
+  for (std::size_t i = 0; i < k.tau.size(); ++i) {
+    char text[100];
+    std::snprintf(text, sizeof text, "      - { share: \"%.6g\", time: \"%.6g s\" }\n", k.weight[i], k.tau[i]);
+    out += text;
+  }
+  return out;
+}
+
+}  // namespace
 
 std::string model_yaml(const Dataset& d, const Result& r, const std::string& program) {
   std::ostringstream s;
@@ -110,8 +136,9 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
   if (r.baseline.empty()) s << "  {}\n";
   s << "effects:\n";
   for (const NamedEffect& e : r.effects) {
-    s << "  - name: " << info(e.effect).name << "\n    form: \"" << e.form << "\"\n    parameters:\n";
+    s << "  - name: " << info(e.effect).name << "\n    on: true\n    form: \"" << e.form << "\"\n    parameters:\n";
     for (const Estimate& p : e.parameters) value(p, "      ");
+    s << spectrum_text(e);
   }
   s << "partial: " << (r.partial ? "true" : "false") << "\nvalid_for:\n";
   for (const Channel& c : d.channels) {

@@ -64,6 +64,7 @@ struct Result {
   std::vector<NotTestable> not_testable;
   std::optional<NextExperiment> next;
   std::vector<Term> shape;          // of an unknown effect: residual = sum coefficient * term, in units of full scale
+  std::vector<Term> residual_terms; // the same of the baseline's residual, whatever the verdict (for comparison, see baselines.py)
   double dispersion = 1.0, structure_before = 0.0, structure_after = 0.0;
   double correlation = 0.0;         // of the signatures of the first two rivals
   Fit before, after;                // for the plots
@@ -76,7 +77,12 @@ struct Options {
   Rules rules;
   int threads = 2;
   std::function<void(const std::string& stage, double share)> progress;  // may be empty
+  std::function<bool()> cancelled;                                       // may be empty; asked before every fit, by any thread
 };
+
+/// Thrown by reconcile() when it was cancelled.
+struct Cancelled {};
+void stop_if_cancelled(const Options& options);
 
 Result reconcile(const Dataset& d, const Options& options = {});
 /// tip-hold has no input: its effects are told apart in the spectrum.
@@ -89,5 +95,7 @@ std::vector<Term> describe(const RigModel& model, const Fit& base);
 std::optional<NextExperiment> next_experiment(const Fitter& fitter, const Fit& a, const Fit& b);
 std::vector<Estimate> baseline_estimates(const Fitter& fitter, const Fit& fit, double dispersion);
 std::vector<NamedEffect> effect_estimates(const Fitter& fitter, const Fit& fit, double dispersion);
+/// An interval reaches to the values that other forms give which the data do not tell apart: which form is true is part of what is not known.
+void widen_by_forms(std::vector<NamedEffect>& effects, const std::vector<NamedEffect>& others);
 
 }  // namespace filum::reconcile

@@ -30,17 +30,23 @@ Noise first_noise(const RigModel& model) {
 
 }  // namespace
 
+void stop_if_cancelled(const Options& options) {
+  if (options.cancelled && options.cancelled()) throw Cancelled();
+}
+
 void parallel(int threads, std::size_t n, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next = 0;
+  std::atomic<bool> failed = false;
   std::exception_ptr failure;
   std::mutex guard;
   const auto loop = [&] {
-    for (std::size_t i = next++; i < n; i = next++) {
+    for (std::size_t i = next++; i < n && !failed; i = next++) {
       try {
         work(i);
       } catch (...) {
         const std::lock_guard lock(guard);
         failure = std::current_exception();
+        failed = true;
       }
     }
   };
@@ -127,6 +133,7 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
   }
   std::vector<Fit> fits(candidates.size());
   parallel(options_.threads, candidates.size(), [&](std::size_t i) {
+    stop_if_cancelled(options_);
     auto forms = from.forms;
     auto params = from.params;
     forms.push_back(candidates[i].form);
@@ -176,6 +183,7 @@ void Search::refresh() {
   base_ = fitter_.fit({}, base_.base, {}, {12, 1e-5}, &base_);
   if (candidates_.size() > 14) candidates_.resize(14);
   parallel(options_.threads, candidates_.size(), [&](std::size_t i) {
+    stop_if_cancelled(options_);
     const Fit old = candidates_[i];
     candidates_[i] = fitter_.fit(old.forms, old.base, old.params, {6, 1e-4}, &old);
   });
@@ -198,6 +206,7 @@ bool Search::worth_more(const Fit& f) const {
 
 void Search::run() {
   const auto say = [&](const char* stage, double share) {
+    stop_if_cancelled(options_);
     if (options_.progress) options_.progress(stage, share);
   };
   say("baseline", 0.05);
@@ -239,6 +248,28 @@ double Search::explained(const Fit& f) const {
   const double rest = left.z > 3.0 ? left.excess : 0.0;
   const double all = base_.chi2 - least->chi2 + rest;
   return all > 0.0 ? (base_.chi2 - f.chi2) / all : 0.0;
+}
+
+std::vector<Fit> Search::other_forms(const Fit& winner, double tie) const {
+  std::vector<std::pair<std::size_t, const Form*>> swaps;
+  for (std::size_t k = 0; k < winner.forms.size(); ++k)
+    for (const Form& f : forms_)
+      if (f.effect == winner.forms[k]->effect && f.kind != winner.forms[k]->kind && !f.line && !f.params.empty() && f.params[0].name == winner.forms[k]->params[0].name) swaps.emplace_back(k, &f);
+  std::vector<Fit> fits(swaps.size());
+  parallel(options_.threads, swaps.size(), [&](std::size_t i) {
+    stop_if_cancelled(options_);
+    const auto& [k, form] = swaps[i];
+    auto forms = winner.forms;
+    auto params = winner.params;
+    params[k] = form->starts[0];
+    for (std::size_t a = 0; a < form->params.size(); ++a)
+      for (std::size_t b = 0; b < forms[k]->params.size(); ++b)
+        if (form->params[a].name == forms[k]->params[b].name) params[k][a] = std::clamp(winner.params[k][b], form->params[a].low, form->params[a].high);
+    forms[k] = form;
+    fits[i] = fitter_.fit(forms, winner.base, params, {15, 1e-4}, &winner);
+  });
+  std::erase_if(fits, [&](const Fit& f) { return bic(f) - bic(winner) > tie; });
+  return fits;
 }
 
 double Search::material(const Fit& f, const Fit& against) const {

@@ -25,6 +25,8 @@ class Search {
   double bic(const Fit& f) const { return f.chi2 / dispersion_ + f.parameters * std::log(static_cast<double>(f.samples)); }
   /// Share of what is missing that a fit explains; `rest` is the structure left in the best fit of all.
   double explained(const Fit& f) const;
+  /// The same set with one effect in another of its forms, where the data do not tell the two apart (within `tie` of BIC).
+  std::vector<Fit> other_forms(const Fit& winner, double tie) const;
   /// Largest change of the prediction against another fit, over the rules' materiality (1: just material).
   double material(const Fit& f, const Fit& against) const;
   /// What the residual holds beyond what replicates differ by.

@@ -91,7 +91,11 @@ Eigen::MatrixXd RigModel::free_columns(const Trial& t, const Setting& s) const {
   add(Effect::mains_hum, 1);
   const int order = free_polynomial();
   const Eigen::Index n = t.time.size();
-  Eigen::MatrixXd columns(n, order + 1 + 2 * static_cast<Eigen::Index>(lines.size()));
+  const double* lag = s.on(Effect::sensor_lag);
+  const std::vector<int> tails = lag != nullptr && s.form(Effect::sensor_lag) % 3 == 0 ? drops(t) : std::vector<int>{};
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, order + 1 + 2 * static_cast<Eigen::Index>(lines.size()) + static_cast<Eigen::Index>(tails.size()));
+  for (std::size_t i = 0; i < tails.size(); ++i)
+    for (Eigen::Index k = tails[i]; k < n; ++k) columns(k, columns.cols() - 1 - static_cast<Eigen::Index>(i)) = std::exp((t.time[tails[i]] - t.time[k]) / lag[0]);
   const double half = 0.5 * (t.time[n - 1] - t.time[0]);
   const Eigen::ArrayXd x = (t.time.array() - t.time[0]) / half - 1.0;
   for (int k = 0; k <= order; ++k) columns.col(k) = x.pow(k);

@@ -200,8 +200,9 @@ void Tissue::drain(const Trial& t, const Geometry& g, const Setting& s, Eigen::V
   switch (s.form(Effect::poroelastic_drainage)) {
     case 0: relax(radial_drainage(p[1], p[0], g.radius), t.time, f); break;
     case 1: relax(slab_drainage(p[1], p[0], g.height), t.time, f); break;
-    case 2: relax(prony(p[1], g.radius * g.radius / p[0]), t.time, f); break;
-    default: relax(prony(p[1], g.height * g.height / p[0]), t.time, f); break;
+    // the slowest mode alone: a_1 = 2.405 of the cylinder, pi of the slab drained on both faces
+    case 2: relax(prony(p[1], g.radius * g.radius / (5.783 * p[0])), t.time, f); break;
+    default: relax(prony(p[1], g.height * g.height / (9.870 * p[0])), t.time, f); break;
   }
 }
 
@@ -297,15 +298,15 @@ std::vector<Form> Tissue::forms() const {
   f.push_back({Effect::first_cycle_softening, 1, "error function of the energy", {{"d", "-", 0.005, 0.9, false}, W0}, grid({{0.2}, {0.3 * w}}), false});
   f.push_back({Effect::permanent_set, 0, "fraction of the largest past strain", {{"fraction", "-", 0.002, 0.6, false}}, {{0.05}}, false});
   f.push_back({Effect::permanent_set, 1, "grows with the square of the largest past strain", {{"fraction", "-", 0.002, 0.6, false}}, {{0.05}}, false});
-  const auto drain = [&](int kind, const char* text, double D) {
+  const auto drain = [&](int kind, const char* text, double D, double x = 1.0) {
     f.push_back({Effect::poroelastic_drainage, kind, text, {{"diffusivity", "m2/s", 1e-3 * D, 100 * D, true}, {"drained_share", "-", 0.01, 0.9, false}},
-                 grid({{0.05 * D, 0.5 * D, 3 * D}, {0.3}}), false});
+                 grid({{0.05 * x * D, 0.5 * x * D, 3 * x * D}, {0.3}}), false});
   };
   drain(0, "radial drainage", Dr);
   drain(1, "drainage through the height", Dh);
   if (sizes_.size() > 1) {  // of one size alone these are the relaxation of a solid under another name
-    drain(2, "one exponential, lateral size", Dr);
-    drain(3, "one exponential, height", Dh);
+    drain(2, "slowest mode alone, lateral size", Dr, 1.0 / 5.783);
+    drain(3, "slowest mode alone, height", Dh, 1.0 / 9.870);
   }
   const double pull = 0.05 * force_ / area_;
   const ParamSpec traction{"pull_off", "Pa", 1e-2 * pull, 30 * pull, true}, gap{"gap", "m", 1e-3 * travel_, travel_, true};

@@ -35,6 +35,9 @@ constexpr const char* kPolicy =
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; "
     "connect-src 'self' ws:; frame-ancestors 'none'";
 
+// Reports stand alone: no scripts, no network; the viewer may frame them.
+constexpr const char* kDocumentPolicy = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'self'";
+
 Text shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
 
 // One browser's WebSocket. At most one read and one write are under way; messages wait in order, of frames only the newest.
@@ -263,11 +266,33 @@ struct Server::Impl {
       return fail(request, http::status::forbidden, "addressed by a foreign name: open " + url());
     }
     if (websocket::is_upgrade(request)) return answer_upgrade(request, *path);
+    if (request.method() == http::verb::post && path->starts_with("/api/")) return answer_post(request, *path);
     if (request.method() != http::verb::get && request.method() != http::verb::head) {
       return fail(request, http::status::method_not_allowed, "only GET");
     }
     if (path->starts_with("/api/")) return answer_api(request, *path);
+    if (path->starts_with("/documents/")) return answer_document(request, *path);
     return answer_file(request, *path);
+  }
+
+  /// Changes something: only for a page of this server, which names its origin, and never for a form (they cannot send JSON).
+  http::response<http::string_body> answer_post(const Connection::Request& request, const std::string& path) {
+    const std::string_view origin = view_of(request[http::field::origin]);
+    if (origin.empty() || !origin_allowed(origin, view_of(request[http::field::host]), on_loopback)) {
+      return fail(request, http::status::forbidden, "page of another origin");
+    }
+    if (!view_of(request[http::field::content_type]).starts_with("application/json")) return fail(request, http::status::unsupported_media_type, "only JSON");
+    const auto json = host.post(path, request.body());
+    if (!json) return fail(request, http::status::not_found, "no such resource");
+    return plain(request, http::status::ok, "application/json", *json);
+  }
+
+  http::response<http::string_body> answer_document(const Connection::Request& request, const std::string& path) {
+    auto document = host.document(path);
+    if (!document) return fail(request, http::status::not_found, "no such document");
+    auto response = plain(request, http::status::ok, document->type, std::move(document->text));
+    response.set("Content-Security-Policy", kDocumentPolicy);
+    return response;
   }
 
   http::response<http::string_body> answer_upgrade(const Connection::Request& request, const std::string& path) const {

@@ -23,6 +23,11 @@ struct ServerOptions {
 };
 
 /// Who carries out what browsers ask for. All functions are called by the server's thread and must return at once.
+struct Document {
+  std::string type;  // "text/html; charset=utf-8"
+  std::string text;
+};
+
 class ServerHost {
  public:
   virtual ~ServerHost() = default;
@@ -32,6 +37,10 @@ class ServerHost {
   virtual void controlled(bool by_somebody) = 0;
   /// JSON text for GET `path` below /api; empty optional: not found.
   virtual std::optional<std::string> api(std::string_view path) = 0;
+  /// JSON text for POST `path` below /api with a JSON body, from a page of this server only; empty optional: not found.
+  virtual std::optional<std::string> post(std::string_view /*path*/, const std::string& /*body*/) { return std::nullopt; }
+  /// A page or picture below /documents, shown in a frame of the viewer.
+  virtual std::optional<Document> document(std::string_view /*path*/) { return std::nullopt; }
 };
 
 class Server {

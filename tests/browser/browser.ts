@@ -2,7 +2,7 @@
 import { spawn, type ChildProcess } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { connect, createServer, type Socket } from "node:net";
 import { chromium, type BrowserContext, type Page } from "playwright-core";
@@ -46,14 +46,16 @@ export async function openPage(address: string): Promise<Opened> {
 }
 
 export const trainerProgram = process.env.FILUM_BIN ?? "";
+/// A handle for whoever has none, built beside the program; plays a demonstration on a pseudo terminal.
+export const feederProgram = trainerProgram ? join(dirname(resolve(kRepository, trainerProgram)), "tests", "filum_serial_feeder") : "";
 export const hasTrainer = trainerProgram !== "" && existsSync(resolve(kRepository, trainerProgram));
 
 export interface Trainer { address: string; folder: string; stop(): Promise<void> }
 
 /// Starts the real program on a free port with a store of its own and waits for the address it prints.
-export async function startTrainer(): Promise<Trainer> {
+export async function startTrainer(...more: string[]): Promise<Trainer> {
   const folder = mkdtempSync(join(tmpdir(), "filum-store-"));
-  const child: ChildProcess = spawn(resolve(kRepository, trainerProgram), ["train", "--port", "0", "--store", folder], { stdio: ["ignore", "pipe", "pipe"] });
+  const child: ChildProcess = spawn(resolve(kRepository, trainerProgram), ["train", "--port", "0", "--store", folder, ...more], { stdio: ["ignore", "pipe", "pipe"] });
   let said = "";
   const address = await new Promise<string>((done, fail) => {
     const listen = (data: Buffer) => {

@@ -3,6 +3,8 @@ if(TARGET filum)
   set_tests_properties(cli.program PROPERTIES TIMEOUT 600)
 endif()
 filum_test(cli/pacing)
+filum_test(cli/reconcile_job)
+filum_test(cli/calibration_session)
 if(TARGET filum AND TARGET filum_serial_feeder)
   add_test(NAME cli.serial_run COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/serial_run_test.sh $<TARGET_FILE:filum>
            $<TARGET_FILE:filum_serial_feeder> ${PROJECT_SOURCE_DIR})

@@ -48,10 +48,12 @@ print('outside, unknown or partial   ', share(r['verdict'] == 'unknown' or r['pa
 print('outside, confidently wrong    ', share(r['verdict'] == 'effect' and not r['partial'] for _, l, r in of('outside')))
 amb = [(l, r) for _, l, r in rows if r['verdict'] == 'ambiguous' and l['kind'] in ('single', 'unidentifiable')]
 print('ambiguous holds the truth     ', share(set(l['effects']) in rivals(r) for l, r in amb), 'size', round(sum(len(rivals(r)) for _, r in amb) / max(1, len(amb)), 2))
+sets = [(l, r) for _, l, r in rows if rivals(r) and l['kind'] in ('single', 'unidentifiable')]
+print('sets of rivals, a name alone being a set of one: hold the truth', share(set(l['effects']) in rivals(r) for l, r in sets), 'size', round(sum(len(rivals(r)) for _, r in sets) / max(1, len(sets)), 2))
 print('double, both named            ', share(named(r) == set(l['effects']) for _, l, r in of('double')))
 print('double, no wrong name         ', share(named(r) <= set(l['effects']) for _, l, r in of('double')))
 good = [(l, r) for _, l, r in single if right(l, r)]
-error, cover = [], []
+error, cover, alike = [], [], []
 for l, r in good:
     for e in r['effects']:
         for p, v in e['parameters'].items():
@@ -59,7 +61,9 @@ for l, r in good:
             if isinstance(truth, float) and truth and v['value'] is not None:
                 error.append(abs(v['value'] / truth - 1))
                 cover.append(v['low'] <= truth <= v['high'])
-print('parameter error, median       ', f'{100 * median(error):.1f} %', 'covered', share(cover))
+                if l['parameters'][e['name']].get('form', True):
+                    alike.append(cover[-1])
+print('parameter error, median       ', f'{100 * median(error):.1f} %', 'covered', share(cover), 'where the generator has a form of the catalogue', share(alike))
 print('held-out gap after, median    ', round(median([r['gap']['held_out']['after'] for _, r in good if r['gap']['held_out']['after']]), 3))
 t = [r['seconds'] for _, _, r in rows]
 print('seconds, median and most      ', round(median(t), 1), round(max(t), 1))

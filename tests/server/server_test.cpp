@@ -35,6 +35,15 @@ class RecordingHost : public ServerHost {
     if (path == "/api/sessions") return R"({"sessions":[]})";
     return std::nullopt;
   }
+  std::optional<std::string> post(std::string_view path, const std::string& body) override {
+    if (path != "/api/reconcile/start") return std::nullopt;
+    note([&] { posted.push_back(body); });
+    return "{}";
+  }
+  std::optional<Document> document(std::string_view path) override {
+    if (path == "/documents/report") return Document{"text/html; charset=utf-8", "<h1>Report</h1>"};
+    return std::nullopt;
+  }
   template <class Condition>
   bool wait(Condition condition) {
     std::unique_lock lock(mutex);
@@ -45,6 +54,7 @@ class RecordingHost : public ServerHost {
   std::condition_variable changed;
   std::vector<ClientMessage> commands;
   std::vector<bool> control;
+  std::vector<std::string> posted;
 
  private:
   template <class Change>
@@ -106,12 +116,14 @@ class ServerTest : public testing::Test {
   }
 
   http::response<http::string_body> get(const std::string& target, http::verb verb = http::verb::get, const std::string& host = "",
-                                        const std::string& body = "") {
+                                        const std::string& body = "", const std::string& origin = "", const std::string& type = "") {
     asio::io_context io;
     tcp::socket socket(io);
     socket.connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), server_->port()));
     http::request<http::string_body> request(verb, target, 11);
     request.set(http::field::host, host.empty() ? "127.0.0.1:" + std::to_string(server_->port()) : host);
+    if (!origin.empty()) request.set(http::field::origin, origin);
+    if (!type.empty()) request.set(http::field::content_type, type);
     request.body() = body;
     request.prepare_payload();
     beast::error_code ignored;
@@ -139,6 +151,30 @@ TEST_F(ServerTest, ServesTheViewerAndNothingElse) {
   }
   EXPECT_EQ(get("/%zz").result_int(), 400u);
   EXPECT_EQ(get("/", http::verb::post).result_int(), 405u);
+}
+
+TEST_F(ServerTest, ChangesAreAskedForByPagesOfThisServerOnly) {
+  const auto post = [&](const std::string& path, const std::string& origin, const std::string& type) {
+    return get(path, http::verb::post, "", R"({"dataset":"a"})", origin, type).result_int();
+  };
+  const std::string own = "http://127.0.0.1:" + std::to_string(server_->port()), path = "/api/reconcile/start";
+  EXPECT_EQ(post(path, "", "application/json"), 403u) << "no page says so";
+  EXPECT_EQ(post(path, "http://evil.example", "application/json"), 403u);
+  EXPECT_EQ(post(path, own, "text/plain"), 415u) << "what a form can send";
+  EXPECT_TRUE(host_.posted.empty());
+  EXPECT_EQ(post(path, own, "application/json"), 200u);
+  EXPECT_EQ(post("/api/nothing", own, "application/json"), 404u);
+  ASSERT_EQ(host_.posted.size(), 1u);
+  EXPECT_EQ(host_.posted[0], R"({"dataset":"a"})");
+}
+
+TEST_F(ServerTest, DocumentsRunNoScripts) {
+  const auto report = get("/documents/report");
+  EXPECT_EQ(report.body(), "<h1>Report</h1>");
+  const std::string policy(report["Content-Security-Policy"]);
+  EXPECT_NE(policy.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(policy.find("script"), std::string::npos);
+  EXPECT_EQ(get("/documents/none").result_int(), 404u);
 }
 
 TEST_F(ServerTest, AnswersUnderApi) {

@@ -1,4 +1,5 @@
 import { App, type PageMaker } from "./app";
+import { LaboratoryPage } from "./ui/laboratory_page";
 import { LivePage } from "./ui/live_page";
 import { ReplayPage } from "./ui/replay_page";
 import { ResultPage } from "./ui/result_page";
@@ -8,6 +9,7 @@ import "./style.css";
 
 const pages: Record<string, PageMaker> = {
   "": (app) => new TasksPage(app),
+  laboratory: (app) => new LaboratoryPage(app),
   live: (app) => new LivePage(app),
   result: (app, id) => new ResultPage(app, id),
   replay: (app, id) => new ReplayPage(app, id),

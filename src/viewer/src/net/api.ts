@@ -7,5 +7,41 @@ async function get<T>(path: string): Promise<T> {
   return (await answer.json()) as T;
 }
 
+async function post<T>(path: string, body: object): Promise<T> {
+  const answer = await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+  if (!answer.ok) throw new Error(`the trainer answered ${answer.status} to ${path}`);
+  const said = (await answer.json()) as T & { refused?: string };
+  if (said.refused) throw new Error(said.refused);
+  return said;
+}
+
+export interface ReconcileStatus {
+  folder: string;
+  datasets: { name: string; report: { verdict: string; effects: string[]; partial: boolean; sentence: string; model: boolean } | null }[];
+  job: { state: string; dataset: string; stage: string; share: number; message: string };
+}
+export const reconcile = {
+  status: (): Promise<ReconcileStatus> => get("/api/reconcile"),
+  start: (dataset: string): Promise<ReconcileStatus> => post("/api/reconcile/start", { dataset }),
+  cancel: (): Promise<ReconcileStatus> => post("/api/reconcile/cancel", {}),
+};
+
+export interface CalibrationPoint { value: number; count: number; noise: number; upwards: boolean }
+export interface CalibrationFit { good: boolean; why: string; unit: string; gain: number; zero: number; uncertainty: number; hysteresis: number; repeatability: number }
+export interface CalibrationStatus {
+  port: string;
+  in_use: string;
+  run: null | { state: "asking" | "reading" | "done" | "refused"; instruction: string; taken: number; of: number; trouble: string; file: string;
+    angle: CalibrationPoint[]; force: CalibrationPoint[]; fits?: { angle: CalibrationFit; force: CalibrationFit } };
+}
+export const calibration = {
+  status: (): Promise<CalibrationStatus> => get("/api/calibration"),
+  change: (what: string, wish: object): Promise<CalibrationStatus> => post(`/api/calibration/${what}`, wish),
+};
+
+export interface AnalysisStatus { state: "working" | "ready" | "failed"; document: string; message: string }
+export const analysis = (id: string, clamped: string): Promise<AnalysisStatus> =>
+  get(`/api/analysis/${encodeURIComponent(id)}${clamped ? `/${encodeURIComponent(clamped)}` : ""}`);
+
 export const sessions = (): Promise<SessionList> => get("/api/sessions");
 export const session = (id: string): Promise<SessionDetail> => get(`/api/sessions/${encodeURIComponent(id)}`);

@@ -2,6 +2,7 @@
 import type { App, Page } from "../app";
 import type { Result, ServerMessage } from "../messages";
 import { session as fetchSession } from "../net/api";
+import { analysisPanel } from "./analysis_panel";
 import { h } from "./dom";
 import { clock, kKnotTitles, milliNewton, quantity, words } from "./format";
 import { PathPlot } from "./path_plot";
@@ -55,6 +56,10 @@ export class ResultPage implements Page {
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
       this.curves(result));
+    if (!id) return;
+    const panel = analysisPanel(id);
+    this.element.append(panel.element);
+    this.cleanup.push(panel.dispose);
   }
 
   private scoreTable(result: Result): HTMLElement {

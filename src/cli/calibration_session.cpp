@@ -1,0 +1,183 @@
+#include "cli/calibration_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/error.h"
+#include "devices/serial_forceps.h"
+#include "haptics/haptic_loop.h"
+
+namespace filum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::chrono::seconds kPatience{5};  // for the half second of samples that a reading takes
+
+std::string stamp(const char* format) {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, format, &utc);
+  return text;
+}
+
+Json fit_json(const CalibrationFit& f, double scale, const char* unit) {
+  Json residuals = Json::array();
+  for (const double r : f.residuals) residuals.push_back(r / scale);
+  return {{"good", f.good}, {"why", f.why}, {"unit", unit}, {"gain", f.gain / scale}, {"zero", f.zero}, {"uncertainty", f.uncertainty / scale},
+          {"hysteresis", f.hysteresis / scale}, {"repeatability", f.repeatability / scale}, {"residuals", residuals}};
+}
+
+Json points_json(const std::vector<CalibrationPoint>& points, double scale) {
+  Json list = Json::array();
+  for (const CalibrationPoint& p : points) list.push_back({{"value", p.value / scale}, {"count", p.count}, {"noise", p.noise}, {"upwards", p.upwards}});
+  return list;
+}
+
+std::vector<double> growing(const Json& wish, const char* key, std::vector<double> otherwise, double most) {
+  if (!wish.contains(key)) return otherwise;
+  const auto refuse = [&] { throw InputError("calibration", key, wish[key].dump().substr(0, 80), "5 to 20 growing numbers from " + std::to_string(-most) + " to " + std::to_string(most)); };
+  if (!wish[key].is_array() || wish[key].size() < 5 || wish[key].size() > 20) refuse();
+  std::vector<double> values;
+  for (const Json& v : wish[key]) {
+    if (!v.is_number() || std::abs(v.get<double>()) > most || (!values.empty() && v.get<double>() <= values.back())) refuse();
+    values.push_back(v.get<double>());
+  }
+  return values;
+}
+
+std::string word(const Json& wish, const char* key, const std::string& otherwise) {
+  if (!wish.contains(key)) return otherwise;
+  const std::string text = wish[key].is_string() ? wish[key].get<std::string>() : "";
+  const auto allowed = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.'; };
+  if (text.empty() || text.size() > 40 || !std::all_of(text.begin(), text.end(), allowed))
+    throw InputError("calibration", key, wish[key].dump().substr(0, 80), "up to 40 letters, digits, dots and dashes");
+  return text;
+}
+
+}  // namespace
+
+CalibrationPlan calibration_plan(const std::string& text, std::string port, std::string root, std::string folder) {
+  const Json wish = Json::parse(text, nullptr, false);
+  if (!wish.is_object()) throw InputError("calibration", "body", text.substr(0, 80), "a JSON object");
+  CalibrationPlan plan;
+  plan.port = std::move(port);
+  plan.root = std::move(root);
+  plan.folder = std::move(folder);
+  plan.sensor = word(wish, "sensor", plan.sensor);
+  plan.name = word(wish, "name", plan.name);
+  plan.angles = growing(wish, "angles", plan.angles, 60.0);
+  plan.forces = growing(wish, "forces", plan.forces, 20.0);
+  if (wish.contains("repeats")) {
+    if (!wish["repeats"].is_number_integer() || wish["repeats"] < 1 || wish["repeats"] > 20)
+      throw InputError("calibration", "repeats", wish["repeats"].dump().substr(0, 80), "a whole number from 1 to 20");
+    plan.repeats = wish["repeats"].get<int>();
+  }
+  return plan;
+}
+
+struct CalibrationSession::Reader {
+  SerialForceps forceps;
+  std::vector<DeviceSample> samples;
+  Clock::time_point until;
+  bool stale = false;  // what waits in the line is from before the value was set
+};
+
+CalibrationSession::CalibrationSession(CalibrationPlan plan) : plan_(std::move(plan)) {
+  std::vector<double> angles;
+  for (const double a : plan_.angles) angles.push_back(a * kDegree);
+  guides_.emplace_back(CalibrationGuide::Channel::angle, angles, plan_.repeats);
+  guides_.emplace_back(CalibrationGuide::Channel::force, plan_.forces, plan_.repeats);
+  reader_.reset(new Reader{SerialForceps(plan_.port, ForcepsCalibration::load(plan_.root + "/models/forceps/default.yaml")), {}, {}, false});
+  reader_->samples.reserve(kMaxSamplesPerPoll);
+  thread_ = std::thread([this] { work(); });
+}
+
+CalibrationSession::~CalibrationSession() {
+  quit_ = true;
+  thread_.join();
+}
+
+void CalibrationSession::read() {
+  const std::lock_guard lock(guard_);
+  if (at_ >= guides_.size() || guides_[at_].reading()) return;
+  trouble_.clear();
+  reader_->until = Clock::now() + kPatience;
+  reader_->stale = true;
+  guides_[at_].begin();
+}
+
+/// Always drains the port; what waited there when a reading was asked for does not count.
+void CalibrationSession::work() {
+  while (!quit_) {
+    reader_->samples.clear();
+    reader_->forceps.poll(steady_now_us(), reader_->samples);
+    const bool emptied = reader_->samples.size() < kMaxSamplesPerPoll / 2;
+    {
+      const std::lock_guard lock(guard_);
+      if (reader_->stale) {
+        reader_->stale = !emptied;
+        reader_->samples.clear();
+      }
+      if (at_ < guides_.size() && guides_[at_].reading()) {
+        CalibrationGuide& guide = guides_[at_];
+        for (const DeviceSample& sample : reader_->samples) guide.take(sample);
+        if (guide.reading() && Clock::now() > reader_->until) {
+          guide.again();
+          trouble_ = "No reading within 5 s: is the handle plugged in, is a wire broken? The same value again.";
+        }
+        if (guide.done() && ++at_ == guides_.size()) finish();
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+void CalibrationSession::finish() {
+  const CalibrationReadings readings{guides_[0].points(), guides_[1].points()};
+  angle_ = fit_line(readings.angle, {}, "deg", kDegree);
+  force_ = fit_line(readings.force, {}, "N", 1.0);
+  if (!angle_.good || !force_.good) return;
+  std::error_code error;
+  std::filesystem::create_directories(plan_.folder, error);
+  const std::string path = plan_.folder + "/" + plan_.name + "-" + stamp("%Y%m%d-%H%M%S") + ".yaml";
+  const CalibrationHeader header{plan_.name, plan_.sensor, stamp("%Y-%m-%d"), 1, 1.2 * std::max(-angle_.from, angle_.to), 1.2 * force_.to};
+  std::ofstream file(path);
+  file << calibration_text(header, readings, angle_, force_);
+  if (file.flush()) file_ = path;
+  else trouble_ = path + " cannot be written";
+}
+
+std::string CalibrationSession::file() const {
+  const std::lock_guard lock(guard_);
+  return file_;
+}
+
+Json CalibrationSession::status() const {
+  const std::lock_guard lock(guard_);
+  const bool done = at_ >= guides_.size();
+  const std::size_t per = 2 * static_cast<std::size_t>(plan_.repeats);
+  Json json = {{"state", done ? (file_.empty() ? "refused" : "done") : guides_[at_].reading() ? "reading" : "asking"},
+               {"port", plan_.port},
+               {"channel", at_ == 0 ? "angle" : "force"},
+               {"instruction", done ? "" : guides_[at_].instruction()},
+               {"taken", guides_[0].points().size() + guides_[1].points().size()},
+               {"of", per * (plan_.angles.size() + plan_.forces.size())},
+               {"trouble", trouble_},
+               {"file", file_},
+               {"angle", points_json(guides_[0].points(), kDegree)},
+               {"force", points_json(guides_[1].points(), 1.0)}};
+  if (done) json["fits"] = {{"angle", fit_json(angle_, kDegree, "deg")}, {"force", fit_json(force_, 1.0, "N")}};
+  return json;
+}
+
+}  // namespace filum

@@ -1,0 +1,58 @@
+#pragma once
+// The guided calibration of the forceps behind the trainer's page: the same guide, fit and file as `filum calibrate forceps`; a thread
+// reads the handle while a value is being taken. Test: tests/cli/calibration_session_test.cpp.
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "devices/calibration_file.h"
+#include "devices/calibration_guide.h"
+
+namespace filum {
+
+struct CalibrationPlan {
+  std::string port, root, folder;             // folder: where the file goes
+  std::string sensor = "unknown", name = "forceps";
+  std::vector<double> angles = {0, 5, 10, 15, 20, 25};       // [deg], growing
+  std::vector<double> forces = {0, 0.2, 0.5, 1.0, 2.0, 3.0};  // [N], growing
+  int repeats = 2;
+};
+
+class CalibrationSession {
+ public:
+  /// Opens the port; throws InputError.
+  explicit CalibrationSession(CalibrationPlan plan);
+  ~CalibrationSession();
+  CalibrationSession(const CalibrationSession&) = delete;
+
+  nlohmann::ordered_json status() const;
+  /// The value asked for is set: read it. Ignored while reading or when all is done.
+  void read();
+  /// Path of the file once both fits are good, else empty.
+  std::string file() const;
+
+ private:
+  struct Reader;
+  void work();
+  void finish();
+
+  CalibrationPlan plan_;
+  mutable std::mutex guard_;
+  std::vector<CalibrationGuide> guides_;  // angle, force; guarded
+  std::size_t at_ = 0;                    // which of them; guarded
+  std::string trouble_, file_;            // guarded
+  CalibrationFit angle_, force_;          // guarded
+  std::atomic<bool> quit_ = false;
+  std::unique_ptr<Reader> reader_;
+  std::thread thread_;
+};
+
+/// From a page's wish: sensor, name, repeats, angles [deg], forces [N]; what is absent keeps its default. Throws InputError.
+CalibrationPlan calibration_plan(const std::string& json, std::string port, std::string root, std::string folder);
+
+}  // namespace filum

@@ -1,0 +1,155 @@
+#include "cli/trainer_lab.h"
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/report_page.h"
+#include "base/error.h"
+#include "cli/options.h"
+#include "cli/session_files.h"
+
+namespace filum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t kKept = 8;  // analyses
+
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// Takes a prefix off; false if it is not there.
+bool take(std::string_view& path, std::string_view prefix) {
+  if (!path.starts_with(prefix)) return false;
+  path.remove_prefix(prefix.size());
+  return true;
+}
+
+std::string field(const std::string& body, const char* name) {
+  const Json json = Json::parse(body, nullptr, false);
+  if (!json.is_object() || !json.contains(name) || !json[name].is_string()) throw InputError("request", name, "nothing", "a text");
+  return json[name].get<std::string>();
+}
+
+std::string page_of(const std::string& file, const std::string& clamped) {
+  AnalysisInput input;
+  input.sessions.push_back(open_session(file));
+  if (!clamped.empty()) input.clamped = open_session(clamped);
+  return report_page(analyse(input, program_text()));
+}
+
+}  // namespace
+
+TrainerLab::TrainerLab(LabOptions options, std::function<std::optional<std::string>(const std::string&)> recording_of)
+    : options_(std::move(options)), recording_of_(std::move(recording_of)), reconcile_(options_.datasets, options_.folder + "/reports", options_.root), chosen_(options_.calibration) {}
+
+TrainerLab::~TrainerLab() {
+  if (analyst_.joinable()) analyst_.join();
+}
+
+std::string TrainerLab::calibration() const {
+  const std::lock_guard lock(guard_);
+  return chosen_;
+}
+
+bool TrainerLab::calibrating() const {
+  const std::lock_guard lock(guard_);
+  return calibration_ != nullptr;
+}
+
+Json TrainerLab::calibration_status() const {
+  const std::lock_guard lock(guard_);
+  return {{"port", options_.serial_port}, {"in_use", chosen_}, {"run", calibration_ ? calibration_->status() : Json(nullptr)}};
+}
+
+std::optional<std::string> TrainerLab::get(std::string_view path) {
+  if (path == "/api/reconcile") return text_of(reconcile_.status());
+  if (path == "/api/calibration") return text_of(calibration_status());
+  if (!take(path, "/api/analysis/")) return std::nullopt;
+  const std::size_t slash = path.find('/');
+  return analysis(std::string(path.substr(0, slash)), slash == path.npos ? "" : std::string(path.substr(slash + 1)));
+}
+
+std::optional<std::string> TrainerLab::post(std::string_view path, const std::string& body) {
+  try {
+    const Json answer = change(path, body);
+    if (answer.is_null()) return std::nullopt;
+    return text_of(answer);
+  } catch (const InputError& error) {
+    return text_of({{"refused", error.field + ": found " + error.value + ", expected " + error.expected}});
+  } catch (const std::exception& error) {
+    return text_of({{"refused", error.what()}});
+  }
+}
+
+Json TrainerLab::change(std::string_view path, const std::string& body) {
+  if (path == "/api/reconcile/start") reconcile_.start(field(body, "dataset"));
+  else if (path == "/api/reconcile/cancel") reconcile_.cancel();
+  else if (!path.starts_with("/api/calibration/")) return nullptr;
+  if (path.starts_with("/api/reconcile/")) return reconcile_.status();
+  take(path, "/api/calibration/");
+  if (path == "start") {
+    if (options_.serial_port.empty()) throw InputError("calibration", "port", "none", "a trainer started with --serial PATH");
+    if (port_in_use_) throw InputError("calibration", "port", "a task that uses the forceps", "to end the task first");
+    auto plan = calibration_plan(body, options_.serial_port, options_.root, options_.folder + "/calibrations");
+    const std::lock_guard lock(guard_);
+    calibration_.reset();  // closes the port before it is opened again
+    calibration_ = std::make_unique<CalibrationSession>(std::move(plan));
+  } else {
+    const std::lock_guard lock(guard_);
+    if (!calibration_) throw InputError("calibration", "run", "none", "a calibration that was started");
+    if (path == "read") calibration_->read();
+    else if (path == "stop") calibration_.reset();
+    else if (path == "use") {
+      if (calibration_->file().empty()) throw InputError("calibration", "file", "none", "a calibration that was accepted");
+      chosen_ = calibration_->file();
+      calibration_.reset();
+    } else return nullptr;
+  }
+  return calibration_status();
+}
+
+std::optional<Document> TrainerLab::document(std::string_view path) {
+  if (take(path, "/documents/analysis/")) {
+    const std::lock_guard lock(guard_);
+    const auto at = analyses_.find(std::string(path));
+    if (at == analyses_.end() || at->second.state != "ready") return std::nullopt;
+    return Document{"text/html; charset=utf-8", at->second.text};
+  }
+  if (!take(path, "/documents/reconcile/")) return std::nullopt;
+  const std::size_t slash = path.find('/');
+  if (slash == path.npos) return std::nullopt;
+  const std::string name(path.substr(slash + 1));
+  auto text = reconcile_.file(std::string(path.substr(0, slash)), name);
+  if (!text) return std::nullopt;
+  return Document{name.ends_with(".html") ? "text/html; charset=utf-8" : "text/plain; charset=utf-8", std::move(*text)};
+}
+
+std::optional<std::string> TrainerLab::analysis(const std::string& session, const std::string& clamped) {
+  const auto file = recording_of_(session);
+  const auto floor = clamped.empty() ? std::optional<std::string>("") : recording_of_(clamped);
+  if (!file || !floor) return std::nullopt;
+  const std::string key = clamped.empty() ? session : session + "/" + clamped;
+  const std::lock_guard lock(guard_);
+  if (const auto at = analyses_.find(key); at != analyses_.end())
+    return text_of({{"state", at->second.state}, {"document", at->second.state == "ready" ? "/documents/analysis/" + key : ""}, {"message", at->second.state == "failed" ? at->second.text : ""}});
+  if (!analysing_) {
+    analysing_ = true;
+    if (analyst_.joinable()) analyst_.join();
+    if (analyses_.size() >= kKept) analyses_.clear();
+    analyses_[key] = {};
+    analyst_ = std::thread([this, key, file = *file, floor = *floor] { analyse_in_background(key, file, floor); });
+  }
+  return text_of({{"state", "working"}, {"document", ""}, {"message", ""}});
+}
+
+void TrainerLab::analyse_in_background(const std::string& key, const std::string& file, const std::string& clamped) {
+  Analysis done;
+  try {
+    done = {"ready", page_of(file, clamped)};
+  } catch (const std::exception& error) {
+    done = {"failed", error.what()};
+  }
+  const std::lock_guard lock(guard_);
+  analyses_[key] = std::move(done);
+  analysing_ = false;
+}
+
+}  // namespace filum
