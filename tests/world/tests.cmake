@@ -3,3 +3,4 @@ foreach(name brain_scene cortex fixtures measured_model observe pull_test scene_
 endforeach()
 filum_test(world/needle_scene)
 filum_test(world/vessel_scene)
+filum_test(world/wall_file filum_evidence)

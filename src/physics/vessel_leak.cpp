@@ -1,0 +1,143 @@
+#include "physics/vessel_leak.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "collision/point_triangle.h"
+
+namespace filum {
+namespace {
+
+/// Distance from q to the wall of a part, its held end left out; 0 inside is not told from outside: edges that overlap are closed anyway.
+double distance_to(const VesselMesh& mesh, const Points& x, int part, const Vec3& q, Vec3& nearest) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const WallFace& f : mesh.faces) {
+    if (mesh.part[static_cast<std::size_t>(f.element)] != part || f.surface == WallSurface::end) continue;
+    const auto& nodes = mesh.elements[static_cast<std::size_t>(f.element)];
+    const auto at = [&](std::size_t c) { return Vec3(x.col(nodes[static_cast<std::size_t>(f.corner[c])])); };
+    for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{1, 2}, {2, 3}}) {
+      const Vec3 p = closest_on_triangle(q, at(0), at(i), at(j)).point;
+      if ((p - q).squaredNorm() >= least) continue;
+      least = (p - q).squaredNorm();
+      nearest = p;
+    }
+  }
+  return std::sqrt(least);
+}
+
+/// Least gap over the thickness of the edge at one node of the ring, with the middle of it.
+struct EdgeGap {
+  double gap, depth;
+  Vec3 place, node;
+};
+
+EdgeGap gap_at(const VesselMesh& mesh, const Points& x, int b, int inner, int outer) {
+  EdgeGap g{std::numeric_limits<double>::infinity(), (x.col(outer) - x.col(inner)).norm(), Vec3::Zero(), x.col(inner)};
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const Vec3 q = (1.0 - share) * x.col(inner) + share * x.col(outer);
+    Vec3 nearest = q;
+    const double d = distance_to(mesh, x, b, q, nearest);
+    if (d >= g.gap) continue;
+    g.gap = d;
+    g.place = 0.5 * (q + nearest);
+  }
+  return g;
+}
+
+/// The outer end of the line through the wall that starts at an inner rim node.
+int outer_of(const VesselMesh& mesh, int inner) {
+  int node = inner;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const auto& nodes : mesh.elements)
+      for (std::size_t a = 0; a < 4 && !moved; ++a)
+        if (nodes[a] == node) {
+          node = nodes[a + 4];
+          moved = true;
+        }
+  }
+  return node;
+}
+
+}  // namespace
+
+double slit_speed(double gap, double depth, const BloodOptions& o) noexcept {
+  if (gap <= o.seal || o.pressure <= 0.0) return 0.0;
+  const double a = 0.5 * o.density / (o.discharge * o.discharge), b = 12.0 * o.viscosity * depth / (gap * gap);
+  return 2.0 * o.pressure / (b + std::sqrt(b * b + 4.0 * a * o.pressure));
+}
+
+JoinLeak find_leak(const VesselMesh& mesh, const Points& x, int a, int b, int sectors, const BloodOptions& blood) {
+  const std::vector<int>& ring = mesh.edge_ring[static_cast<std::size_t>(a)];
+  std::vector<EdgeGap> gaps;
+  for (const int i : ring) gaps.push_back(gap_at(mesh, x, b, i, outer_of(mesh, i)));
+  JoinLeak leak;
+  leak.sectors.resize(static_cast<std::size_t>(sectors));
+  std::vector<double> widest(leak.sectors.size(), -1.0);
+  for (std::size_t k = 0; k < gaps.size(); ++k) {
+    const EdgeGap &here = gaps[k], &next = gaps[(k + 1) % gaps.size()];
+    const std::size_t number = k * leak.sectors.size() / gaps.size();
+    LeakSector& s = leak.sectors[number];
+    const double ds = (next.node - here.node).norm(), gap = 0.5 * (here.gap + next.gap), depth = 0.5 * (here.depth + next.depth);
+    s.length += ds;
+    s.gap += gap * ds;
+    if (gap > blood.seal) s.area += gap * ds;
+    s.flow += slit_speed(gap, depth, blood) * gap * ds;
+    if (gap <= widest[number]) continue;
+    widest[number] = gap;
+    s.place = 0.5 * (here.place + next.place);
+  }
+  for (LeakSector& s : leak.sectors) {
+    s.gap /= std::max(s.length, 1e-30);
+    leak.area += s.area;
+    leak.flow += s.flow;
+  }
+  return leak;
+}
+
+std::vector<LumenRing> lumen_rings(const VesselMesh& mesh, const Points& x, int part) {
+  std::vector<std::vector<int>> nodes;  // of each slab, ascending: in the order of the ring
+  int first = -1;
+  std::vector<char> inner(static_cast<std::size_t>(mesh.n_nodes()), 0);
+  for (const WallFace& f : mesh.faces)
+    if (f.surface == WallSurface::inner && mesh.part[static_cast<std::size_t>(f.element)] == part)
+      for (const int c : f.corner) inner[static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(f.element)][static_cast<std::size_t>(c)])] = 1;
+  for (int i = 0; i < mesh.n_nodes(); ++i) {
+    if (!inner[static_cast<std::size_t>(i)]) continue;
+    if (first < 0) first = mesh.slab[static_cast<std::size_t>(i)];
+    nodes.resize(static_cast<std::size_t>(mesh.slab[static_cast<std::size_t>(i)] - first + 1));
+    nodes.back().push_back(i);
+  }
+  std::vector<LumenRing> rings;
+  for (const auto& ring : nodes) {
+    LumenRing r;
+    for (const int i : ring) r.middle += x.col(i) / static_cast<double>(ring.size());
+    Vec3 area = Vec3::Zero();
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Vec3 p = x.col(ring[k]), q = x.col(ring[(k + 1) % ring.size()]);
+      area += 0.5 * (p - r.middle).cross(q - r.middle);
+    }
+    r.area = area.norm();
+    rings.push_back(r);
+  }
+  return rings;
+}
+
+Patency assess_lumen(const std::vector<LumenRing>& rings, double usual_area, const BloodOptions& blood, double most_narrowing) {
+  Patency p;
+  double least = usual_area;
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    least = std::min(least, rings[k].area);
+    if (k == 0) continue;
+    const double area = 0.5 * (rings[k].area + rings[k - 1].area);
+    p.resistance += 8.0 * std::numbers::pi * blood.viscosity * (rings[k].middle - rings[k - 1].middle).norm() / std::max(area * area, 1e-24);
+  }
+  p.narrowing = 1.0 - least / usual_area;
+  p.flow = blood.pressure / (p.resistance + blood.rest);
+  p.patent = p.narrowing < most_narrowing;
+  return p;
+}
+
+}  // namespace filum

@@ -1,0 +1,63 @@
+#pragma once
+// What a finished join lets out and lets through, from the geometry of the walls as they are.
+//
+//   Leak     Between the cut edges of two stumps stands a gap g (distance from the edge of one to the nearest wall of the other), as deep
+//            as the wall is thick, d. Mean speed v in it: p = rho/2 (v/C)^2 + 12 mu d v / g^2, the orifice law for wide gaps and
+//            plane Poiseuille flow for narrow ones (White, Viscous Fluid Flow, 2006, sec. 3-2); Q = sum of v g ds around the edge.
+//            Gaps below `seal` are closed: films and platelets fill them.
+//   Lumen    Area of each ring of inner nodes (length of its vector area); narrowing 1 - least/usual.
+//   Flow     Poiseuille resistances of the rings in series, 8 pi mu L / A^2, beside the rest of the circulation.
+// Neglects: pulsation, clotting, entrance losses of the lumen, the thread's own hole. Test: vessel_leak_test.
+
+#include <vector>
+
+#include "physics/vessel_mesh.h"
+
+namespace filum {
+
+struct BloodOptions {
+  double pressure = 13332.0;   // [Pa], 100 mmHg
+  double density = 1055.0;     // [kg/m3]
+  double viscosity = 3.5e-3;   // [Pa s]
+  double discharge = 0.6;      // [-], C of a sharp-edged orifice
+  double seal = 3e-6;          // [m]
+  double rest = 0.0;           // [Pa s/m3], resistance of the circulation behind and before the vessel
+};
+
+/// Mean speed [m/s] in a slit of this gap and depth [m].
+double slit_speed(double gap, double depth, const BloodOptions& blood) noexcept;
+
+struct LeakSector {
+  double length = 0.0;         // [m], of edge
+  double gap = 0.0;            // [m], mean
+  double area = 0.0;           // [m2], of what is not sealed
+  double flow = 0.0;           // [m3/s]
+  Vec3 place = Vec3::Zero();   // [m], middle of its widest gap: where drops appear
+};
+
+struct JoinLeak {
+  std::vector<LeakSector> sectors;  // from the first node of the edge, as its nodes run
+  double area = 0.0;           // [m2]
+  double flow = 0.0;           // [m3/s]
+};
+
+/// The join of the cut edge of part `a` with the wall of part `b`, in so many sectors of equal numbers of nodes.
+JoinLeak find_leak(const VesselMesh& mesh, const Points& x, int a, int b, int sectors, const BloodOptions& blood);
+
+struct LumenRing {
+  double area = 0.0;           // [m2]
+  Vec3 middle = Vec3::Zero();  // [m]
+};
+/// Rings of a part from its clamp to the cut edge.
+std::vector<LumenRing> lumen_rings(const VesselMesh& mesh, const Points& x, int part);
+
+struct Patency {
+  double narrowing = 0.0;      // [-], 0 open to 1 closed
+  double resistance = 0.0;     // [Pa s/m3], of the vessel
+  double flow = 0.0;           // [m3/s]
+  bool patent = false;
+};
+/// Rings in the order that blood passes them. Patent: narrowed by less than `most_narrowing`.
+Patency assess_lumen(const std::vector<LumenRing>& rings, double usual_area, const BloodOptions& blood, double most_narrowing = 0.5);
+
+}  // namespace filum

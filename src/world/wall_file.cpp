@@ -1,0 +1,73 @@
+#include "world/wall_file.h"
+
+#include <numbers>
+
+#include "base/yaml_file.h"
+
+namespace filum {
+namespace {
+
+/// { value, uncertainty, source }: no number stands alone.
+double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
+  const YamlNode field = file.map(key);
+  if (field.text("source").empty()) field.refuse("source", "where the number comes from");
+  field.quantity("uncertainty", unit, Range::not_negative());
+  return field.quantity("value", unit, range);
+}
+
+WallLayer read_layer(const YamlNode& node) {
+  WallLayer l;
+  l.name = node.text("name");
+  const std::string law = node.choice("law", {"linear", "neo-hookean", "fibres"});
+  l.thickness = measured(node, "thickness", "um", Range::positive());
+  if (law == "linear") {
+    const double young = measured(node, "youngs_modulus", "kPa", Range::positive());
+    l.law = WallLaw::hooke(young, measured(node, "poisson", "-", Range::between(0.0, 0.499)));
+    return l;
+  }
+  l.law.mu = measured(node, "shear_modulus", "kPa", Range::positive());
+  const double bulk = measured(node, "bulk", "MPa", Range::positive());
+  l.law.lambda = bulk - 2.0 / 3.0 * l.law.mu;
+  if (l.law.lambda < l.law.mu) node.refuse("bulk", "more than 5/3 of the shear modulus");
+  l.law.kind = WallLaw::Kind::neo_hookean;
+  if (law == "neo-hookean") return l;
+  l.law.kind = WallLaw::Kind::fibres;
+  l.law.k1 = measured(node, "k1", "kPa", Range::not_negative());
+  l.law.k2 = measured(node, "k2", "-", Range::positive());
+  l.law.beta = measured(node, "beta", "deg", Range::between(0.0, 0.5 * std::numbers::pi));
+  return l;
+}
+
+void read_tube(const YamlNode& file, VesselPreset& p) {
+  p.shape.inner_radius = measured(file, "inner_radius", "mm", Range::positive());
+  p.shape.length = measured(file, "length", "mm", Range::positive());
+  p.shape.opening_angle = measured(file, "opening_angle", "deg", Range::between(0.0, 1.9 * std::numbers::pi));
+  p.axial_stretch = measured(file, "axial_stretch", "-", Range::between(0.5, 3.0));
+  p.pressure = measured(file, "pressure", "mmHg", Range::not_negative());
+  // the radius in the file is the closed ring's; the opened sector with the same middle line is longer
+  const double turn = 2.0 * std::numbers::pi, middle = p.shape.inner_radius + 0.5 * p.shape.thickness;
+  p.shape.inner_radius = middle * turn / (turn - p.shape.opening_angle) - 0.5 * p.shape.thickness;
+}
+
+}  // namespace
+
+VesselPreset load_vessel(const std::string& path) {
+  const YamlNode file = YamlNode::load(path);
+  if (file.text("format") != "filum-vessel/1") file.refuse("format", "filum-vessel/1");
+  VesselPreset p;
+  p.title = file.text("title");
+  p.tube = file.choice("kind", {"tube", "card"}) == "tube";
+  p.shape.thickness = 0.0;
+  for (const YamlNode& node : file.items("layers")) {
+    p.layers.push_back(read_layer(node));
+    p.shape.thickness += p.layers.back().thickness;
+  }
+  if (p.layers.empty() || p.layers.size() > 4) file.refuse("layers", "one to four layers");
+  if (p.tube) read_tube(file, p);
+  p.wall.density = measured(file, "density", "kg/m3", Range::positive());
+  p.wall.damping = measured(file, "damping", "1/s", Range::not_negative());
+  file.finish();
+  return p;
+}
+
+}  // namespace filum
