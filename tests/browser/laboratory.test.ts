@@ -33,7 +33,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
 
   it("reconciles measurements by keyboard alone, shows the report, and stops when asked", { timeout: 600_000 }, async () => {
     writeBlock(join(data, "block"), 400);
-    writeBlock(join(data, "long"), 20_000);
+    writeBlock(join(data, "long"), 80_000);
     trainer = await startTrainer("--datasets", data);
     opened = await openPage(`${trainer.address}#/laboratory`);
     const { page } = opened;
@@ -55,8 +55,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
 
     await page.click("[data-start=long]");
     await page.waitForSelector("progress:not([hidden])");
-    await tabTo("Cancel");
-    await page.keyboard.press("Enter");
+    await page.locator(".cancel").press("Enter");
     await until(() => page.textContent(".reconcile [role=status]"), (text) => (text ?? "").includes("cancelled"), "it is cancelled");
     expect(await page.locator("[data-report=long]").count()).toBe(0);
     expect(opened.trouble).toEqual([]);
