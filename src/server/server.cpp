@@ -278,13 +278,11 @@ struct Server::Impl {
   /// Changes something: only for a page of this server, which names its origin, and never for a form (they cannot send JSON).
   http::response<http::string_body> answer_post(const Connection::Request& request, const std::string& path) {
     const std::string_view origin = view_of(request[http::field::origin]);
-    if (origin.empty() || !origin_allowed(origin, view_of(request[http::field::host]), on_loopback)) {
-      return fail(request, http::status::forbidden, "page of another origin");
-    }
+    const bool own = !origin.empty() && origin_allowed(origin, view_of(request[http::field::host]), on_loopback);
+    if (!own) return fail(request, http::status::forbidden, "page of another origin");
     if (!view_of(request[http::field::content_type]).starts_with("application/json")) return fail(request, http::status::unsupported_media_type, "only JSON");
     const auto json = host.post(path, request.body());
-    if (!json) return fail(request, http::status::not_found, "no such resource");
-    return plain(request, http::status::ok, "application/json", *json);
+    return json ? plain(request, http::status::ok, "application/json", *json) : fail(request, http::status::not_found, "no such resource");
   }
 
   http::response<http::string_body> answer_document(const Connection::Request& request, const std::string& path) {
