@@ -124,7 +124,7 @@ int run(const CalibrateOptions& o) {
   } else {
     print_fit("angle", angle, kDegree, "deg");
     print_fit("force", force, 1.0, "N");
-    if (good) std::printf("written to %s; keep it as models/forceps/default.yaml to use it\n", o.out.c_str());
+    if (good) std::printf("written to %s; use it with --forceps %s\n", o.out.c_str(), o.out.c_str());
   }
   return good ? kDone : kFailed;
 }
