@@ -10,6 +10,7 @@
 #include "evidence/brain_bench.h"
 #include "evidence/name_choice.h"
 #include "evidence/pulled_knot.h"
+#include "evidence/vessel_bench.h"
 
 namespace filum {
 namespace {
@@ -131,6 +132,8 @@ std::vector<Bench> all_benches() {
           {stated("scaling-800", 800, 500), hanging}};
   const auto timer = [](BenchResult& r, const std::function<void()>& step, const std::function<void()>& look) { time_steps(r, step, look); };
   for (auto& [r, run] : brain_benches())
+    list.push_back({r, [run = run, timer](BenchResult& result, const TaskOpener&) { run(result, timer); }});
+  for (auto& [r, run] : vessel_benches())
     list.push_back({r, [run = run, timer](BenchResult& result, const TaskOpener&) { run(result, timer); }});
   return list;
 }

@@ -14,7 +14,9 @@ namespace {
 constexpr double kDecrease = 1e-4;  // of the slope (Armijo)
 constexpr double kBetter = 0.8;     // a residual that falls to this share is welcome whatever the energy says
 constexpr int kShortenings = 8;
-constexpr double kViolent = 0.02;    // [N], unbalanced force of a node at the first guess that is too far off to be trusted
+constexpr double kBedding = 0.006;   // of the mean diagonal of the elements' matrix
+constexpr double kStiff = 1.0;       // [N/m], springs above this come into the first matrix
+constexpr double kViolent = 0.1;     // [N], unbalanced force of a node at the first guess that is too far off to be trusted
 
 using Vector = Eigen::VectorXd;
 Eigen::Map<const Vector> flat(const Points& p) noexcept { return {p.data(), p.size()}; }
@@ -41,10 +43,11 @@ Mat3 frame_of(const Points& x, const std::array<int, 4>& n) noexcept {
   return f.allFinite() ? f : Mat3(Mat3::Identity());
 }
 
-/// Matrix of the first guess: inertia and the elements at rest; held nodes keep a diagonal of their own and no coupling.
+/// Matrix of the first guess: inertia, the elements at rest and a soft bedding; held nodes keep a diagonal of their own and no coupling.
+/// Without the bedding the softest modes of the straight tube, turned into a bent one, stretch it: directions a thousand times too long.
 std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallElements& elements, const Vector& inertia, const std::vector<char>& held) {
   std::vector<SlabFactor::Block> blocks;
-  for (int i = 0; i < mesh.n_nodes(); ++i) blocks.push_back({i, i, (held[static_cast<std::size_t>(i)] ? 1.0 : inertia[i]) * Mat3::Identity()});
+  double diagonal = 0.0;
   for (int e = 0; e < mesh.n_elements(); ++e) {
     const auto K = elements.stiffness(e, mesh.nodes, true);
     const auto& nodes = mesh.elements[static_cast<std::size_t>(e)];
@@ -53,8 +56,11 @@ std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallEl
         const int i = nodes[static_cast<std::size_t>(a)], j = nodes[static_cast<std::size_t>(b)];
         if (i < j || held[static_cast<std::size_t>(i)] || held[static_cast<std::size_t>(j)]) continue;
         blocks.push_back({i, j, K.block<3, 3>(3 * a, 3 * b)});
+        if (i == j) diagonal += K.block<3, 3>(3 * a, 3 * b).trace() / (3.0 * mesh.n_nodes());
       }
   }
+  for (int i = 0; i < mesh.n_nodes(); ++i)
+    blocks.push_back({i, i, (held[static_cast<std::size_t>(i)] ? 1.0 : inertia[i] + kBedding * diagonal) * Mat3::Identity()});
   return blocks;
 }
 
@@ -71,6 +77,7 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   for (const int i : mesh_.held) held_[static_cast<std::size_t>(i)] = 1;
   for (const auto& own : neighbours_) rest_frame_.push_back(frame_of(mesh_.nodes, own));
   factor_ = SlabFactor(mesh_.slab, first_matrix(mesh_, elements_, inertia_, held_));
+  springs_ = WallSprings(factor_, mesh_);
   clamp_.resize(mesh_.edge_ring.size());
   pressure_.assign(clamp_.size(), 0.0);
   longest_move_ = 0.0;
@@ -166,11 +173,21 @@ double VesselWall::evaluate(const WallState& state) noexcept {
   return r.allFinite() ? energy : std::numeric_limits<double>::infinity();
 }
 
-/// d = Q P^-1 Q^T r.
+void VesselWall::gather_springs() noexcept {
+  springs_.clear();
+  for (int k = 0; k < n_loads_; ++k) {
+    const Load& l = loads_[static_cast<std::size_t>(k)];
+    if (l.stiffness.trace() > kStiff) springs_.add({l.node, l.weight, l.stiffness}, turn_);
+  }
+  springs_.prepare();
+}
+
+/// d = Q (P + springs)^-1 Q^T r.
 void VesselWall::precondition(const Vector& r, Vector& d) noexcept {
   const int n = mesh_.n_nodes();
   for (int i = 0; i < n; ++i) turned_f_.segment<3>(3 * i) = (turn_[static_cast<std::size_t>(i)].transpose() * r.segment<3>(3 * i)).cast<float>();
   factor_.solve(turned_f_);
+  springs_.correct(turned_f_);
   for (int i = 0; i < n; ++i) d.segment<3>(3 * i) = turn_[static_cast<std::size_t>(i)] * turned_f_.segment<3>(3 * i).cast<double>();
   for (const int i : mesh_.held) d.segment<3>(3 * i).setZero();
 }
@@ -204,7 +221,7 @@ bool VesselWall::advance(const WallState& state) noexcept {
       if (pressed_) trial_energy_ -= 0.5 * step * (flat(push_) + flat(trial_push_)).dot(direction_);
       if (trial_energy_ <= energy_ - kDecrease * step * slope + noise || trial_residual_.norm() < kBetter * before) return true;
       const double best = 0.5 * slope * step / (slope + (trial_energy_ - energy_) / step);  // of the parabola
-      step *= std::clamp(best / step, 0.1, 0.5);
+      step *= std::clamp(best / step, 0.02, 0.5);
     } else {
       step *= 0.25;
     }
@@ -246,6 +263,7 @@ WallSummary VesselWall::step(WallState& state) noexcept {
   }
   const bool sound = std::isfinite(energy_);
   find_frames(x_);
+  gather_springs();
   residual_ = trial_residual_;
   push_ = trial_push_;
   while (sound) {

@@ -15,6 +15,7 @@
 #include "collision/surface_tree.h"
 #include "physics/vessel_wall_element.h"
 #include "physics/vessel_wall_factor.h"
+#include "physics/vessel_wall_springs.h"
 
 namespace filum {
 
@@ -34,7 +35,7 @@ struct WallOptions {
   double dt = 2e-3;            // [s]
   double density = 1060.0;     // [kg/m3]
   double damping = 100.0;      // [1/s], against the surroundings
-  double tolerance = 5e-6;     // [N], largest unbalanced force of a node
+  double tolerance = 1e-5;     // [N], largest unbalanced force of a node
   int max_iterations = 8;
   int memory = 5;              // pairs of the BFGS history
   bool single_precision = true;  // of the elements' forces
@@ -115,6 +116,7 @@ class VesselWall {
     double inverse = 0.0;  // 1 / (s . y)
   };
 
+  void gather_springs() noexcept;
   void find_frames(const Points& x) noexcept;
   void guess(const WallState& state) noexcept;
   double evaluate(const WallState& state) noexcept;  // energy [J] and residual at trial_x_; infinite if an element is inside out
@@ -132,6 +134,7 @@ class VesselWall {
   std::vector<std::array<int, 4>> neighbours_;  // of each node: inner, outer, before, after
   std::vector<Mat3> rest_frame_;
   SlabFactor factor_;
+  WallSprings springs_;
   SurfaceTree tree_;
   std::vector<Pose> clamp_;
   std::vector<double> pressure_;      // [Pa], of each part

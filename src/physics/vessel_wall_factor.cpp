@@ -66,4 +66,22 @@ void SlabFactor::solve(Eigen::Ref<Eigen::VectorXf> b) noexcept {
   }
 }
 
+Eigen::MatrixXf SlabFactor::inverse(int first, int last) const {
+  const int begin = slabs_[static_cast<std::size_t>(first)].first;
+  const int n = slabs_[static_cast<std::size_t>(last) - 1].first + slabs_[static_cast<std::size_t>(last) - 1].size - begin;
+  Eigen::MatrixXf b = Eigen::MatrixXf::Identity(n, n), spread;
+  for (int k = first; k < last; ++k) {
+    const Slab& s = slabs_[static_cast<std::size_t>(k)];
+    for (const Coupling& c : s.before) b.middleRows<3>(c.row - begin) -= c.value * b.middleRows<3>(c.column - begin);
+    b.middleRows(s.first - begin, s.size) = (s.inverse * b.middleRows(s.first - begin, s.size)).eval();
+  }
+  for (int k = last - 1; k > first; --k) {
+    const Slab &s = slabs_[static_cast<std::size_t>(k)], &before = slabs_[static_cast<std::size_t>(k) - 1];
+    spread.setZero(before.size, n);
+    for (const Coupling& c : s.before) spread.middleRows<3>(c.column - before.first) += c.value.transpose() * b.middleRows<3>(c.row - begin);
+    b.middleRows(before.first - begin, before.size) -= before.inverse * spread;
+  }
+  return b;
+}
+
 }  // namespace filum

@@ -25,6 +25,8 @@ class SlabFactor {
 
   /// x = A^-1 b for 3 n numbers, in place. Allocates nothing.
   void solve(Eigen::Ref<Eigen::VectorXf> b) noexcept;
+  /// A^-1 over the numbers of the slabs [first, last), which must not couple with others.
+  Eigen::MatrixXf inverse(int first, int last) const;
   int n_slabs() const noexcept { return static_cast<int>(slabs_.size()); }
 
  private:

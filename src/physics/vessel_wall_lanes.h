@@ -35,7 +35,7 @@ struct Lanes {
   using Number = Number_;
   using Vector = typename LaneFormat<Number>::Vector;
   static constexpr int kWidth = 32 / sizeof(Number);
-  Vector v = {};
+  Vector v;
   Lanes() = default;
   Lanes(Vector w) noexcept : v(w) {}
   Lanes(double s) noexcept : v(Vector{} + static_cast<Number>(s)) {}

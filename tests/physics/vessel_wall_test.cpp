@@ -131,28 +131,39 @@ TEST(VesselWall, AStepAllocatesNothing) {
   EXPECT_EQ(allocations, before);
 }
 
-/// Random loads far beyond what tissue bears, clamps that jump: no number is lost and nothing is turned inside out.
-TEST(VesselWall, SurvivesViolentHands) {
-  VesselWall wall = stump();
-  WallState state = wall.first_state();
+/// Steps under random loads of this size [N] and a clamp that jumps; then lets go. Returns how far it is from its first shape [m].
+double maltreat(VesselWall& wall, WallState& state, double size, int steps) {
   Rng rng(11);
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < steps; ++k) {
     wall.clear_loads();
     for (int n = 0; n < 4; ++n) {
       const WallPoint at{static_cast<int>(rng.below(72)), Vec3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1))};
-      wall.add_load(state, at, Vec3(rng.normal(), rng.normal(), rng.normal()) * 2e-2, 100.0 * rng.uniform());
+      wall.add_load(state, at, Vec3(rng.normal(), rng.normal(), rng.normal()) * size, 100.0 * rng.uniform());
     }
     if (k % 50 == 0) wall.place_clamp(0, {Vec3(rng.normal(), rng.normal(), rng.normal()) * 5e-4, Quat(Eigen::AngleAxisd(rng.normal(), Vec3::UnitZ()))});
     const WallSummary r = wall.step(state);
-    ASSERT_TRUE(r.sound) << k;
-    ASSERT_TRUE(state.x.allFinite() && state.v.allFinite()) << k;
+    EXPECT_TRUE(r.sound && state.x.allFinite() && state.v.allFinite()) << k;
   }
   wall.clear_loads();
-  for (int k = 0; k < 1500; ++k) wall.step(state);
+  for (int k = 0; k < 1000; ++k) wall.step(state);
   const Pose X = state.clamp[0];
   double worst = 0.0;
   for (int i = 0; i < state.x.cols(); ++i) worst = std::max(worst, (state.x.col(i) - X * Vec3(wall.mesh().nodes.col(i))).norm());
-  EXPECT_LT(worst, 2e-5);  // it has sprung back
+  return worst;
+}
+
+/// Loads far beyond what tissue bears may leave the rim turned inside out, at rest; no number is lost and nothing blows up.
+TEST(VesselWall, SurvivesViolentHands) {
+  VesselWall wall = stump();
+  WallState state = wall.first_state();
+  EXPECT_LT(maltreat(wall, state, 2e-2, 400), 2e-3);
+  EXPECT_LT(state.v.colwise().norm().maxCoeff(), 1e-4);
+}
+
+TEST(VesselWall, SpringsBackFromWhatTissueBears) {
+  VesselWall wall = stump();
+  WallState state = wall.first_state();
+  EXPECT_LT(maltreat(wall, state, 5e-4, 200), 1e-5);
 }
 
 TEST(VesselWall, RefusesMoreLoadsThanItHolds) {

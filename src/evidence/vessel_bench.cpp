@@ -1,0 +1,136 @@
+#include "evidence/vessel_bench.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "evidence/vessel_probe.h"
+#include "physics/vessel_clamp.h"
+#include "physics/vessel_wall.h"
+
+namespace filum {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double kElement = 0.12e-3;  // [m], along
+
+double median(std::vector<double> v) {
+  if (v.empty()) return 0.0;
+  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+/// Two stumps of a rat femoral artery (models/vessel/rat-femoral-artery.yaml without its opening angle).
+VesselMesh stumps(int around, int along) {
+  TubeShape s;
+  s.inner_radius = 0.26e-3;
+  s.thickness = 90e-6;
+  s.around = around;
+  s.along = along;
+  s.length = kElement * along;
+  return make_stumps(s, {});
+}
+
+std::vector<WallLayer> rat_artery() {
+  WallLaw intima, media;
+  intima.kind = WallLaw::Kind::neo_hookean;
+  intima.mu = 30e3;
+  intima.lambda = 2e6;
+  media = intima;
+  media.kind = WallLaw::Kind::fibres;
+  media.k1 = 30e3;
+  media.k2 = 0.84;
+  media.beta = 29.0 * std::numbers::pi / 180.0;
+  WallLaw adventitia = media;
+  adventitia.mu = 5e3;
+  adventitia.k1 = 10e3;
+  adventitia.k2 = 0.71;
+  adventitia.beta = 62.0 * std::numbers::pi / 180.0;
+  return {{"intima", 6e-6, intima}, {"media", 52e-6, media}, {"adventitia", 32e-6, adventitia}};
+}
+
+/// A stitch is drawn to and fro through both edges (three material points through each wall, 400 N/m), forceps press the first stump.
+class Handling {
+ public:
+  Handling(VesselWall& wall, WallState& state, int around, int along) : wall_(wall), state_(state) {
+    const int edge = (along - 1) * around + around / 4, other = wall.mesh().n_elements() / 2;
+    for (const int element : {edge, other + edge})
+      for (const double zeta : {-0.7, 0.0, 0.7}) knots_.push_back({element, Vec3(0, -0.5, zeta)});
+    for (const WallPoint& k : knots_) start_.push_back(wall.position(state, k));
+    pressed_ = {edge + around / 2, Vec3(0, 0, 1)};
+  }
+  void load(int step) {
+    wall_.clear_loads();
+    const double t = 2e-3 * step, pull = 0.1e-3 * (1.0 - std::cos(6.0 * t));
+    for (std::size_t k = 0; k < knots_.size(); ++k) {
+      const Vec3 goal = start_[k] + pull * Vec3(0.3 * std::sin(2.0 * t), 1.0, 0.0);
+      wall_.add_load(state_, knots_[k], 400.0 * (goal - wall_.position(state_, knots_[k])), 400.0);
+    }
+    wall_.add_load(state_, pressed_, Vec3(0, 2e-4 * (1.0 - std::cos(5.0 * t)), 0));
+  }
+
+ private:
+  VesselWall& wall_;
+  WallState& state_;
+  std::vector<WallPoint> knots_;
+  std::vector<Vec3> start_;
+  WallPoint pressed_;
+};
+
+void bench_stumps(BenchResult& r, const StepTimer& timer, int around, int along) {
+  WallOptions options;
+  options.dt = 1e-3 * r.dt_ms;
+  VesselWall wall(stumps(around, along), rat_artery(), options);
+  WallState state = wall.first_state();
+  Handling handling(wall, state, around, along);
+  r.nodes = static_cast<int>(state.x.cols());
+  std::vector<double> refit, forces, iterations;
+  int k = 0, missed = 0;
+  const auto ms = [](Clock::time_point a) { return std::chrono::duration<double, std::milli>(Clock::now() - a).count(); };
+  Points scratch = Points::Zero(3, state.x.cols());
+  WallSummary summary;
+  timer(
+      r,
+      [&] {
+        handling.load(k++);
+        summary = wall.step(state);
+      },
+      [&] {
+        iterations.push_back(summary.iterations);
+        missed += summary.converged ? 0 : 1;
+        auto begin = Clock::now();
+        wall.refit(state);
+        refit.push_back(ms(begin));
+        begin = Clock::now();
+        wall.elements().add_forces(state.x, state.soundness, scratch);
+        forces.push_back(ms(begin));
+      });
+  r.contacts = 7;
+  r.stages = {{"forces of the elements, once", median(forces)},
+              {"boxes of the surface", median(refit)},
+              {"iterations (number)", median(iterations)},
+              {"steps short of the tolerance (share)", static_cast<double>(missed) / k}};
+}
+
+}  // namespace
+
+std::vector<std::pair<BenchResult, TimedBench>> vessel_benches() {
+  std::vector<std::pair<BenchResult, TimedBench>> list;
+  const auto add = [&](const std::string& name, int steps, int around, int along) {
+    BenchResult r;
+    r.name = name;
+    r.dt_ms = 2.0;
+    r.steps = steps;
+    list.emplace_back(r, [around, along](BenchResult& result, const StepTimer& t) { bench_stumps(result, t, around, along); });
+  };
+  add("vessel-wall-168", 2000, 14, 2);
+  add("vessel-wall-1536", 2000, 24, 15);
+  for (const auto& [name, along] : {std::pair("vessel-scaling-200", 1), {"vessel-scaling-400", 3}, {"vessel-scaling-800", 7}, {"vessel-scaling-1500", 15},
+                                    {"vessel-scaling-3000", 30}, {"vessel-scaling-6000", 61}, {"vessel-scaling-12000", 124}})
+    add(name, 300, 24, along);
+  return list;
+}
+
+}  // namespace filum

@@ -1,0 +1,61 @@
+#pragma once
+// Springs at material points, brought into the wall's first matrix: (P + J^T S J)^-1 = P^-1 - C L (I + L^T W L)^-1 L^T C^T with
+// C = P^-1 J^T, W = J C, S = L L^T (Woodbury). A needle or thread in its track is a hundred times stiffer than the tissue about it; left
+// out of P, each such point costs the iteration several rounds. P never changes, so its inverse over each part is kept whole, in
+// single precision; parts of more than kLargestPart nodes go without. Test: vessel_wall_springs_test.
+
+#include <array>
+#include <vector>
+
+#include "physics/vessel_wall_factor.h"
+#include "physics/vessel_mesh.h"
+
+namespace filum {
+
+struct WallSpring {
+  std::array<int, 8> node;
+  Eigen::Matrix<double, 8, 1> weight;
+  Mat3 stiffness;  // [N/m]
+};
+
+class WallSprings {
+ public:
+  static constexpr int kMost = 24;            // springs: more are left to the iteration
+  static constexpr int kLargestPart = 1200;   // nodes
+
+  WallSprings() = default;
+  WallSprings(const SlabFactor& factor, const VesselMesh& mesh);
+
+  void clear() noexcept { n_ = 0; }
+  /// False if there is no room or the part is too large. `turn` maps the matrix's directions into those of the present.
+  bool add(const WallSpring& spring, const std::vector<Mat3>& turn) noexcept;
+  /// After the last add(). False if the correction cannot be made; then correct() does nothing.
+  bool prepare() noexcept;
+  /// From P^-1 b to (P + J^T S J)^-1 b, in place, in the matrix's own directions.
+  void correct(Eigen::Ref<Eigen::VectorXf> x) noexcept;
+  int size() const noexcept { return n_; }
+
+ private:
+  struct Part {
+    int first = 0;            // node
+    Eigen::MatrixXf inverse;  // empty: too large
+  };
+  struct Spring {
+    int part;
+    std::array<int, 8> node;
+    std::array<Eigen::Matrix3f, 8> blocks;  // of J
+    Eigen::Matrix3f root;                   // L
+  };
+  Eigen::Vector3f at(const Spring& s, const Eigen::Ref<const Eigen::VectorXf>& x) const noexcept;
+
+  std::vector<Part> parts_;
+  std::vector<int> part_of_;
+  std::vector<Spring> springs_;
+  Eigen::MatrixXf columns_;  // C L, rows counted from the part's first node
+  Eigen::MatrixXf small_;    // I + L^T W L, factored
+  Eigen::VectorXf load_;
+  int n_ = 0;
+  bool ready_ = false;
+};
+
+}  // namespace filum
