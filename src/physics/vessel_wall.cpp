@@ -14,6 +14,7 @@ namespace {
 constexpr double kDecrease = 1e-4;  // of the slope (Armijo)
 constexpr double kBetter = 0.8;     // a residual that falls to this share is welcome whatever the energy says
 constexpr int kShortenings = 8;
+constexpr double kLonger = 4.0;      // than the step taken last: more is not tried at first
 constexpr double kBedding = 0.006;   // of the mean diagonal of the elements' matrix
 constexpr double kStiff = 1.0;       // [N/m], springs above this come into the first matrix
 constexpr double kViolent = 0.1;     // [N], unbalanced force of a node at the first guess that is too far off to be trusted
@@ -213,13 +214,16 @@ void VesselWall::direction() noexcept {
 /// Goes along the direction, less far if that turns elements inside out or the energy does not fall.
 bool VesselWall::advance(const WallState& state) noexcept {
   const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = (options_.single_precision ? 3e-8 : 1e-13) * std::abs(energy_);
-  double step = std::min(1.0, longest_move_ / direction_.cwiseAbs().maxCoeff());
+  double step = std::min({1.0, kLonger * taken_, longest_move_ / direction_.cwiseAbs().maxCoeff()});
   for (int k = 0; k < kShortenings; ++k) {
     trial_x_ = x_ + step * direction_.reshaped(3, x_.cols());
     trial_energy_ = evaluate(state);
     if (std::isfinite(trial_energy_)) {
       if (pressed_) trial_energy_ -= 0.5 * step * (flat(push_) + flat(trial_push_)).dot(direction_);
-      if (trial_energy_ <= energy_ - kDecrease * step * slope + noise || trial_residual_.norm() < kBetter * before) return true;
+      if (trial_energy_ <= energy_ - kDecrease * step * slope + noise || trial_residual_.norm() < kBetter * before) {
+        taken_ = step;
+        return true;
+      }
       const double best = 0.5 * slope * step / (slope + (trial_energy_ - energy_) / step);  // of the parabola
       step *= std::clamp(best / step, 0.02, 0.5);
     } else {
@@ -244,6 +248,7 @@ void VesselWall::add_pair() noexcept {
 WallSummary VesselWall::step(WallState& state) noexcept {
   WallSummary summary;
   n_pairs_ = 0;
+  taken_ = 1.0;
   guess(state);
   pressed_ = std::any_of(pressure_.begin(), pressure_.end(), [](double p) { return p != 0.0; });
   trial_x_ = x_;

@@ -143,7 +143,7 @@ class VesselWall {
   // scratch of a step
   Points x_, target_, residual_, trial_x_, trial_residual_, push_, trial_push_;  // push: of pressure
   bool pressed_ = false;
-  double energy_ = 0.0, trial_energy_ = 0.0;
+  double energy_ = 0.0, trial_energy_ = 0.0, taken_ = 1.0;  // taken: share of the last direction
   std::vector<Mat3> turn_;
   Eigen::VectorXd direction_, work_;
   Eigen::VectorXf turned_f_;
