@@ -6,6 +6,7 @@
 namespace filum {
 namespace {
 
+constexpr double kDeepest = 30e-6;     // [m], overlap that counts: what has gone deeper comes back as gently
 constexpr double kTrackReach = 0.3e-3;  // [m], of thread on either side of a track that is left alone
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
@@ -38,6 +39,8 @@ void VesselContact::hold(const VesselWall& wall, const WallState& w, const Touch
     t.arc = touch.arc;
     t.anchor = wall.position(w, touch.at);
     t.stiffness = stiffness * touch.normal * touch.normal.transpose();
+    const double depth = (t.anchor - at_arc(thread, touch.arc)).dot(touch.normal);
+    if (depth > kDeepest) t.anchor -= (depth - kDeepest) * touch.normal;
     const auto [edge, f] = locate_arc(thread, touch.arc);
     const Vec3 run = thread.x.col(edge + 1) - thread.x.col(edge), flat = run - run.dot(touch.normal) * touch.normal;
     if (flat.norm() > 1e-9) {

@@ -7,6 +7,8 @@
 namespace filum {
 namespace {
 
+constexpr int kSettling = 500;  // steps at most until the tissue stands still at the start
+
 PassObservation::State state_of(const NeedleTrack& t) noexcept {
   if (t.ended == 2) return PassObservation::State::torn;
   if (t.ended == 1) return PassObservation::State::pulled_out;
@@ -22,14 +24,13 @@ std::uint64_t hash_point(const WallPoint& p, std::uint64_t h) noexcept {
 }  // namespace
 
 VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity)
-    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), first_(wall_.first_state()) {
-  wall_.settle(first_, 500);
-  wall_.refit(first_);
-}
+    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity) {}
 
-VesselState VesselScene::start(const Vec3& point) const {
+VesselState VesselScene::start(const Vec3& point) {
   VesselState s;
-  s.wall = first_;
+  s.wall = wall_.first_state();
+  wall_.settle(s.wall, kSettling);
+  wall_.refit(s.wall);
   s.tracks.point_before = point;
   return s;
 }

@@ -12,7 +12,8 @@ class VesselScene {
  public:
   VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity);
 
-  VesselState start(const Vec3& point) const;
+  /// The tissue as its stresses and clamps leave it; `point`: of the needle.
+  VesselState start(const Vec3& point);
   void describe(TissueDescription& d) const;
   void size_observation(Observation& o) const;
 
@@ -32,7 +33,6 @@ class VesselScene {
   VesselWall wall_;
   NeedleTracks tracks_;
   VesselContact contact_;
-  WallState first_;
 };
 
 std::uint64_t hash_vessel(const VesselState& s) noexcept;

@@ -7,6 +7,7 @@
 
 #include "world/model.h"
 #include "world/needle_model.h"
+#include "world/state.h"
 #include "world/world.h"
 
 namespace filum {
