@@ -12,8 +12,10 @@ namespace filum {
 namespace {
 
 constexpr double kDecrease = 1e-4;  // of the slope (Armijo)
+constexpr double kBack = 0.8;       // of the slope, that may be left beyond the valley where energies differ by rounding (Hager & Zhang 2005, eq. 4.1)
 constexpr double kBetter = 0.8;     // a residual that falls to this share is welcome whatever the energy says
 constexpr int kShortenings = 8;
+constexpr double kQuiet = 0.1;       // of the tolerance: below this a step needs no iteration at all
 constexpr double kLonger = 4.0;      // than the step taken last: more is not tried at first
 constexpr double kBedding = 0.006;   // of the mean diagonal of the elements' matrix
 constexpr double kStiff = 1.0;       // [N/m], springs above this come into the first matrix
@@ -213,14 +215,16 @@ void VesselWall::direction() noexcept {
 
 /// Goes along the direction, less far if that turns elements inside out or the energy does not fall.
 bool VesselWall::advance(const WallState& state) noexcept {
-  const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = (options_.single_precision ? 3e-8 : 1e-13) * std::abs(energy_);
+  const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = (options_.single_precision ? 1e-6 : 1e-12) * std::abs(energy_);
   double step = std::min({1.0, kLonger * taken_, longest_move_ / direction_.cwiseAbs().maxCoeff()});
   for (int k = 0; k < kShortenings; ++k) {
     trial_x_ = x_ + step * direction_.reshaped(3, x_.cols());
     trial_energy_ = evaluate(state);
     if (std::isfinite(trial_energy_)) {
       if (pressed_) trial_energy_ -= 0.5 * step * (flat(push_) + flat(trial_push_)).dot(direction_);
-      if (trial_energy_ <= energy_ - kDecrease * step * slope + noise || trial_residual_.norm() < kBetter * before) {
+      const bool falls = trial_energy_ <= energy_ - kDecrease * step * slope;
+      const bool level = trial_energy_ <= energy_ + noise && flat(trial_residual_).dot(direction_) >= -kBack * slope;
+      if (falls || level || trial_residual_.norm() < kBetter * before) {
         taken_ = step;
         return true;
       }
@@ -274,7 +278,8 @@ WallSummary VesselWall::step(WallState& state) noexcept {
   while (sound) {
     summary.residual = residual_.colwise().norm().maxCoeff();
     summary.converged = summary.residual <= options_.tolerance;
-    if (summary.converged || summary.iterations == options_.max_iterations) break;
+    const bool settled = summary.iterations > 0 || summary.residual <= kQuiet * options_.tolerance;  // what is left creeps home
+    if ((summary.converged && settled) || summary.iterations == options_.max_iterations) break;
     direction();
     if (!advance(state)) break;
     ++summary.iterations;
