@@ -152,7 +152,7 @@ double maltreat(VesselWall& wall, WallState& state, double size, int steps, bool
   return worst;
 }
 
-/// Loads far beyond what tissue bears may leave the rim turned inside out, at rest; no number is lost and nothing blows up.
+/// Loads far beyond what tissue bears leave it crumpled for seconds; no number is lost and nothing blows up.
 TEST(VesselWall, SurvivesViolentHands) {
   VesselWall wall = stump();
   WallState state = wall.first_state();
@@ -160,7 +160,7 @@ TEST(VesselWall, SurvivesViolentHands) {
   EXPECT_LT(state.v.colwise().norm().maxCoeff(), 1e-4);
 }
 
-TEST(VesselWall, SpringsBackFromWhatTissueBears) {
+TEST(VesselWall, SpringsBackFromLightHands) {
   VesselWall wall = stump();
   WallState state = wall.first_state();
   EXPECT_LT(maltreat(wall, state, 1e-4, 200, false), 1e-5);
