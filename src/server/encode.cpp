@@ -155,6 +155,8 @@ std::string scene_message(const SceneDescription& scene) {
     const PelletShape& p = scene.pellets[static_cast<std::size_t>(i)];
     objects.push_back({{"name", p.name}, {"radius", p.radius}});
   }
+  json notch = json::array();
+  for (const PostShape& bar : scene.notch) notch.push_back(post_json(bar));
   return text_of({{"type", "scene"},
                   {"task", scene.task},
                   {"title", scene.title},
@@ -164,6 +166,7 @@ std::string scene_message(const SceneDescription& scene) {
                   {"dt", scene.dt},
                   {"post", scene.has_post ? post_json(scene.post) : json()},
                   {"base", scene.has_post ? post_json(scene.base) : json()},
+                  {"notch", notch},
                   {"floor_height", scene.floor_height},
                   {"tools", tools},
                   {"objects", objects},

@@ -21,6 +21,7 @@ void add_fixtures(const Model& model, RodObstacles& obstacles) {
     add_bar(model.description.base);
   }
   for (const PostShape& lip : model.lips) add_bar(lip);
+  for (const PostShape& bar : model.description.notch) add_bar(bar);
   Obstacle sheet;
   sheet.kind = Obstacle::Kind::plane;
   sheet.body = body;

@@ -201,6 +201,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
     d.base = read_bar(scene.map("base"));
   }
   for (const YamlNode& lip : scene.items_or_none("lips")) m->lips.push_back(read_bar(lip));
+  for (const YamlNode& bar : scene.items_or_none("notch")) d.notch.push_back(read_bar(bar));
   d.floor_height = scene.quantity("floor", "mm");
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
   m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));

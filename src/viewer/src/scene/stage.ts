@@ -88,6 +88,7 @@ export class Stage {
     this.addSheet();
     for (const bar of [message.post, message.base]) if (bar) this.addBar(bar);
     if (message.post) this.addStands(message.post);
+    this.addNotch(message.notch ?? []);
     this.brain = message.brain ? new Brain(message.brain, this.painted) : null;
     if (this.brain) this.content.add(this.brain.group);
     this.instruments = (this.brain ? [] : message.tools).map((shape, index) => new Instrument(shape, index, this.materials));
@@ -173,6 +174,20 @@ export class Stage {
     mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3(...bar.axis).normalize());
     mesh.castShadow = mesh.receiveShadow = true;
     this.content.add(mesh);
+  }
+
+  /// The bars of the notch, and for the eye a peg below them.
+  private addNotch(bars: NonNullable<Scene["post"]>[]): void {
+    const first = bars[0];
+    if (!first) return;
+    for (const bar of bars) this.addBar(bar);
+    const low = new THREE.Vector3(...first.position).addScaledVector(new THREE.Vector3(...first.axis).normalize(), -first.half_length).multiplyScalar(kMm);
+    const height = low.z - this.floorHeight;
+    const peg = new THREE.Mesh(new THREE.CylinderGeometry(2 * first.radius * kMm, 3 * first.radius * kMm, height, 32), this.materials.clamp);
+    peg.rotation.x = Math.PI / 2;
+    peg.position.set(low.x, low.y, this.floorHeight + height / 2);
+    peg.castShadow = peg.receiveShadow = true;
+    this.content.add(peg);
   }
 
   /// Clamps and feet at both ends of the post. Only for the eye: they stand where the bars end and the thread never is.
