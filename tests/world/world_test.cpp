@@ -26,7 +26,7 @@ Inputs hand(int step) {
   for (std::size_t i = 0; i < m.instruments.size(); ++i) in.tools[i] = {m.instrument_start[i], 0.2, 0.0, false, true, 0};
   ToolInput& t = in.tools[0];
   const Vec3 handle = t.X_WD.q * Vec3::UnitZ();
-  const Vec3 on_thread = Vec3(t.X_WD.p.x(), m.thread_path(1, 0), m.thread_path(2, 0)) - 0.8e-3 * handle;
+  const Vec3 on_thread = Vec3(0.5 * t.X_WD.p.x(), m.thread_path(1, 0), m.thread_path(2, 0)) - 0.8e-3 * handle;  // near the post it sags little
   const double down = std::clamp(step / 150.0, 0.0, 1.0), up = std::clamp((step - 220) / 200.0, 0.0, 1.0);
   t.X_WD.p = (1.0 - down) * t.X_WD.p + down * on_thread + up * Vec3(1e-3, 2e-3 * std::sin(0.02 * step), 3e-3);
   if (step > 170) t.grip_angle = -0.08;
