@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/ensure.h"
+
 namespace filum {
 namespace {
 
@@ -172,6 +174,7 @@ double reference_twist(const Vec3& d0, const Vec3& t0, const Vec3& d1, const Vec
 RodState RodState::from_nodes(const Points& nodes, int capacity, bool naturally_straight) {
   RodState s;
   const int n = static_cast<int>(nodes.cols());
+  ENSURE(n >= 2 && n <= capacity, "a rod of at least two nodes and no more than there is room for");
   s.n = n;
   s.x = Points::Zero(3, capacity);
   s.x.leftCols(n) = nodes;

@@ -4,39 +4,12 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/yaml_file.h"
 #include "world/brain_scene.h"
 #include "world/measured_model.h"
+#include "world/model_file.h"
 
 namespace filum {
 namespace {
-
-YamlNode open(const std::string& path, const std::string& format) {
-  YamlNode file = YamlNode::load(path);
-  if (file.text("format") != format) file.refuse("format", format);
-  return file;
-}
-
-/// { value, uncertainty, source }: no number stands alone.
-double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
-  const YamlNode field = file.map(key);
-  field.text("source");
-  field.quantity("uncertainty", unit, Range::not_negative());
-  return field.quantity("value", unit, range);
-}
-
-Pose read_pose(const YamlNode& node) {
-  Pose X;
-  X.p = node.vec3("p", "mm");
-  const Vec3 z = node.vec3("handle", "-"), x = node.vec3("opening", "-");
-  if (z.norm() < 1e-6) node.refuse("handle", "a direction");
-  if (z.cross(x).norm() < 1e-6) node.refuse("opening", "a direction across the blade, not along it");
-  const Vec3 zu = z.normalized(), xu = (x - x.dot(zu) * zu).normalized();
-  Mat3 r;
-  r << xu, zu.cross(xu), zu;
-  X.q = Quat(r);
-  return X;
-}
 
 CortexShape read_shape(const YamlNode& node) {
   CortexShape s;
@@ -84,7 +57,7 @@ void read_veins(const YamlNode& file, BrainModel& m) {
 }
 
 void read_brain(const std::string& path, BrainModel& m) {
-  const YamlNode file = open(path, "filum-brain/1");
+  const YamlNode file = open_model_file(path, "filum-brain/1");
   m.name = file.text("title");
   if (file.has("mesh")) {
     const std::string mesh = (std::filesystem::path(path).parent_path() / file.text("mesh")).string();
@@ -128,7 +101,7 @@ void read_blades(const std::string& root, const YamlNode& scene, Model& m, Brain
 }  // namespace
 
 BladeShape load_blade(const std::string& path) {
-  const YamlNode file = open(path, "filum-spatula/1");
+  const YamlNode file = open_model_file(path, "filum-spatula/1");
   BladeShape b;
   b.name = file.text("title");
   b.width = file.quantity("width", "mm", Range::positive());
@@ -146,7 +119,7 @@ BladeShape load_blade(const std::string& path) {
 
 std::shared_ptr<const Model> load_brain_scene(const std::string& root, const std::string& task, const std::string& model_file) {
   const std::string scene_file = "curricula/" + task + "/scene.yaml";
-  const YamlNode scene = open(root + "/" + scene_file, kBrainScene);
+  const YamlNode scene = open_model_file(root + "/" + scene_file, kBrainScene);
   auto m = std::make_shared<Model>();
   auto brain = std::make_shared<BrainModel>();
   m->sources.push_back(scene_file);

@@ -1,24 +1,14 @@
 #include "world/needle_file.h"
 
 #include "base/units.h"
+#include "world/model_file.h"
 #include "world/needle_model.h"
 #include "world/needle_scene.h"
 
 namespace filum {
-namespace {
-
-double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
-  const YamlNode field = file.map(key);
-  field.text("source");
-  field.quantity("uncertainty", unit, Range::not_negative());
-  return field.quantity("value", unit, range);
-}
-
-}  // namespace
 
 NeedleShape load_needle(const std::string& path) {
-  const YamlNode file = YamlNode::load(path);
-  if (file.text("format") != "filum-needle/1") file.refuse("format", "filum-needle/1");
+  const YamlNode file = open_model_file(path, "filum-needle/1");
   NeedleShape n;
   n.name = file.text("title");
   n.wire_radius = 0.5 * measured(file, "wire", "um", {20e-6, 500e-6});
@@ -41,7 +31,7 @@ void read_needle(const std::string& root, const YamlNode& node, Model& m) {
   needle->shape = load_needle(root + "/" + source);
   const Eigen::Index last = m.thread_path.cols() - 1;
   const Vec3 along = (m.thread_path.col(last) - m.thread_path.col(last - 1)).normalized();
-  const Vec3 normal = node.vec3("normal", "-").normalized();
+  const Vec3 normal = read_direction(node, "normal");
   const Vec3 in_plane = along - along.dot(normal) * normal;
   if (in_plane.norm() < 0.5) node.refuse("normal", "a direction across the thread's end");
   const Vec3 y = in_plane.normalized();

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/yaml_file.h"
 #include "world/brain_file.h"
 #include "world/measured_model.h"
+#include "world/model_file.h"
 #include "world/needle_file.h"
 #include "world/vessel_file.h"
 #include "world/world.h"
@@ -14,52 +14,21 @@
 namespace filum {
 namespace {
 
-YamlNode open(const std::string& path, const std::string& format) {
-  YamlNode file = YamlNode::load(path);
-  if (file.text("format") != format) file.refuse("format", format);
-  return file;
-}
-
-/// A measured quantity: { value, uncertainty, source }. Uncertainty and source are demanded, so that no number stands alone.
-double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
-  const YamlNode field = file.map(key);
-  field.text("source");
-  if (unit == "-") {
-    field.number("uncertainty", Range::not_negative());
-    return field.number("value", range);
-  }
-  field.quantity("uncertainty", unit, Range::not_negative());
-  return field.quantity("value", unit, range);
-}
-
-Pose read_pose(const YamlNode& node) {
-  Pose X;
-  X.p = node.vec3("p", "mm");
-  const Vec3 z = node.vec3("handle", "-");
-  const Vec3 x = node.vec3("opening", "-");
-  if (z.norm() < 1e-6) node.refuse("handle", "a direction");
-  if (z.cross(x).norm() < 1e-6) node.refuse("opening", "a direction that is not along the handle");
-  const Vec3 zu = z.normalized(), xu = (x - x.dot(zu) * zu).normalized();
-  Mat3 r;
-  r << xu, zu.cross(xu), zu;
-  X.q = Quat(r);
-  return X;
-}
-
 PostShape read_bar(const YamlNode& node) {
   PostShape bar;
   bar.p_W = node.vec3("centre", "mm");
-  bar.axis_W = node.vec3("axis", "-").normalized();
+  bar.axis_W = read_direction(node, "axis");
   bar.radius = node.quantity("radius", "mm", Range::positive());
   bar.half_length = 0.5 * node.quantity("length", "mm", Range::positive());
   return bar;
 }
 
-Points read_thread_path(const YamlNode& scene, double longest) {
+Points read_thread_path(const YamlNode& scene, double longest, int capacity) {
   const double length = scene.quantity("length", "mm", {1e-3, 1.0});
   const Vec3 tip = scene.vec3("short_end", "mm");
-  const Vec3 direction = scene.vec3("direction", "-").normalized();
+  const Vec3 direction = read_direction(scene, "direction");
   const int n = std::max(8, static_cast<int>(std::ceil(length / longest)) + 1);
+  if (n > capacity) scene.refuse("length", "a thread that resolution.nodes times resolution.longest reaches along");
   Points path(3, n);
   for (int i = 0; i < n; ++i) path.col(i) = tip + direction * (length * i / (n - 1));
   return path;
@@ -120,7 +89,7 @@ void read_pellets(const YamlNode& scene, Model& m) {
 }  // namespace
 
 RodMaterial load_suture(const std::string& path, ContactMaterial& contact) {
-  const YamlNode file = open(path, "filum-suture/1");
+  const YamlNode file = open_model_file(path, "filum-suture/1");
   file.text("title");
   RodMaterial m;
   m.radius = 0.5 * measured(file, "diameter", "um", Range::positive());
@@ -141,7 +110,7 @@ RodMaterial load_suture(const std::string& path, ContactMaterial& contact) {
 }
 
 InstrumentParameters load_instrument(const std::string& path) {
-  const YamlNode file = open(path, "filum-instrument/1");
+  const YamlNode file = open_model_file(path, "filum-instrument/1");
   InstrumentParameters p;
   p.name = file.text("title");
   p.kind = file.choice("kind", {"forceps", "needle-holder", "scissors"});
@@ -174,7 +143,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
     throw InputError("command line", "task", task, "the name of a task with a scene (see `filum list`)");
   if (YamlNode::load(path).text("format") == kBrainScene) return load_brain_scene(root, task, model_file);
   auto m = std::make_shared<Model>();
-  const YamlNode scene = open(path, "filum-scene/1");
+  const YamlNode scene = open_model_file(path, "filum-scene/1");
   m->sources.push_back("curricula/" + task + "/scene.yaml");
   SceneDescription& d = m->description;
   d.task = task;
@@ -193,7 +162,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   d.thread_strength = m->thread.strength;
   read_resolution(scene.map("resolution"), m->resolution, d.capacity);
   const YamlNode thread = scene.map("thread");
-  m->thread_path = read_thread_path(thread, m->resolution.longest);
+  m->thread_path = read_thread_path(thread, m->resolution.longest, d.capacity);
   if (scene.has("needle")) read_needle(root, scene.map("needle"), *m);
   d.has_post = scene.has("post") || !m->needle;
   if (d.has_post) {

@@ -2,18 +2,12 @@
 
 #include <numbers>
 
+#include "world/model_file.h"
 #include "world/needle_model.h"
 #include "world/vessel_scene.h"
 
 namespace filum {
 namespace {
-
-double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
-  const YamlNode field = file.map(key);
-  field.text("source");
-  field.quantity("uncertainty", unit, Range::not_negative());
-  return field.quantity("value", unit, range);
-}
 
 WallLayer read_layer(const YamlNode& node) {
   WallLayer l;
@@ -48,8 +42,7 @@ VesselMesh read_card(const YamlNode& node, double thickness) {
 }  // namespace
 
 TrackMaterial load_track(const std::string& path) {
-  const YamlNode file = YamlNode::load(path);
-  if (file.text("format") != "filum-track/1") file.refuse("format", "filum-track/1");
+  const YamlNode file = open_model_file(path, "filum-track/1");
   file.text("title");
   TrackMaterial m;
   for (const YamlNode& node : file.items("layers")) {

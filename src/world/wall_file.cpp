@@ -2,18 +2,10 @@
 
 #include <numbers>
 
-#include "base/yaml_file.h"
+#include "world/model_file.h"
 
 namespace filum {
 namespace {
-
-/// { value, uncertainty, source }: no number stands alone.
-double measured(const YamlNode& file, const std::string& key, const std::string& unit, const Range& range) {
-  const YamlNode field = file.map(key);
-  if (field.text("source").empty()) field.refuse("source", "where the number comes from");
-  field.quantity("uncertainty", unit, Range::not_negative());
-  return field.quantity("value", unit, range);
-}
 
 WallLayer read_layer(const YamlNode& node) {
   WallLayer l;
@@ -52,8 +44,7 @@ void read_tube(const YamlNode& file, VesselPreset& p) {
 }  // namespace
 
 VesselPreset load_vessel(const std::string& path) {
-  const YamlNode file = YamlNode::load(path);
-  if (file.text("format") != "filum-vessel/1") file.refuse("format", "filum-vessel/1");
+  const YamlNode file = open_model_file(path, "filum-vessel/1");
   VesselPreset p;
   p.title = file.text("title");
   p.tube = file.choice("kind", {"tube", "card"}) == "tube";

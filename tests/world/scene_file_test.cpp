@@ -122,6 +122,9 @@ TEST_F(SceneFile, SceneErrorsNameFileAndField) {
   expect_refusal(scene_, "nodes: 240", "nodes: 1", "nodes");
   expect_refusal(scene_, "axis: [0, 1, 0]", "axis: [0, 1]", "axis");
   expect_refusal(scene_, "  length: \"", "  width: \"", "length");
+  expect_refusal(scene_, "  length: \"", "  length: \"9", "length");  // more nodes than there is room for
+  expect_refusal(scene_, "axis: [0, 1, 0]", "axis: [0, 0, 0]", "axis");
+  expect_refusal(scene_, "direction: [-1, 0, 0]", "direction: [0, 0, 0]", "direction");
   expect_refusal(scene_, "radius: \"0.4 mm\"", "radius: \"-0.4 mm\"", "radius");
 }
 

@@ -1,4 +1,4 @@
-foreach(name brain_scene cortex fixtures measured_model observe pull_test scene_file state_hash world)
+foreach(name brain_scene cortex fixtures measured_model model_file observe pull_test scene_file state_hash world)
   filum_test(world/${name})
 endforeach()
 filum_test(world/needle_scene)
