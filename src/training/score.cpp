@@ -204,7 +204,7 @@ ScoreItem score_item(const Task& task, const RubricItem& rule, const Result& r) 
 }
 
 void judge(const Task& task, bool broken, Result& r) {
-  const auto fail = [&r](std::string reason) { r.verdict.push_back(std::move(reason)); };
+  const auto fail = [&r](const auto& reason) { r.verdict.emplace_back(reason); };
   if (task.demonstration_only) fail("a demonstration does not pass");
   if (!r.finished) fail("not all steps were done");
   if (broken) fail("the thread broke");
@@ -223,7 +223,7 @@ void judge(const Task& task, bool broken, Result& r) {
     fail(number_text(r.total) + " points, asked for are " + number_text(task.pass_points));
   }
   r.passed = r.verdict.empty();
-  if (r.passed) r.verdict.push_back("all that was asked for was met (simulator-derived estimate)");
+  if (r.passed) r.verdict.emplace_back("all that was asked for was met (simulator-derived estimate)");
 }
 
 /// Every k-th index so that at most kMaxCurvePoints are left.

@@ -196,7 +196,7 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
   }
   measure_tails(r.knot, r.measures);
   score(task_, last_.broken, r);
-  if (failed_) r.verdict.push_back("scoring stopped early: out of memory");
+  if (failed_) r.verdict.emplace_back("scoring stopped early: out of memory");
   add_curves(log_, scene_, r);
   if (r.pressure) add_pressure_curves(r);
   return r;
