@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/stage_clock.h"
+
 namespace filum {
 namespace {
 
@@ -158,6 +160,7 @@ void BlockCholesky::set_zero() noexcept {
 }
 
 bool BlockCholesky::factor() noexcept {
+  const StageScope stage("linear system");
   const int* update = update_.data();
   for (int k = 0; k < n_; ++k) {
     Mat4& inverse = diagonal_[k];
@@ -175,6 +178,7 @@ bool BlockCholesky::factor() noexcept {
 }
 
 void BlockCholesky::solve(Eigen::Ref<Eigen::Matrix4Xd> b) const noexcept {
+  const StageScope stage("linear system");
   for (int k = 0; k < n_; ++k) {
     auto y = b.col(order_[k]);
     const Eigen::Vector4d solved = diagonal_[k] * y;

@@ -40,6 +40,11 @@ DrivenTask open_task(const std::string& root, const std::string& task) {
     for (; hands->next_us <= now_us; hands->next_us += kTick) hands->loop.tick(hands->next_us);
     return hands->loop.inputs().read();
   };
+  driven.over = [hands] {
+    for (std::size_t i = 0; i < hands->loop.n_devices(); ++i)
+      if (hands->loop.device(i).health().state != DeviceState::finished) return false;
+    return true;
+  };
   return driven;
 }
 
@@ -79,6 +84,7 @@ void print_line(const BenchResult& r) {
   std::printf("%-18s %5d %8d %6.2f %6d %8.3f %8.3f %8.3f %9.2f %12.3f %8.2f\n", r.name.c_str(), r.nodes,
               r.contacts, r.dt_ms, r.steps, r.p50_ms, r.p99_ms, r.max_ms, r.real_time_factor,
               r.reference_p50_ms, r.p50_ms / r.reference_p50_ms);
+  for (const auto& [name, ms] : r.stages) std::printf("    %-40s %9.4f\n", name.c_str(), ms);
   std::fflush(stdout);
 }
 

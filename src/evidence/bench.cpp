@@ -5,8 +5,10 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <thread>
 
+#include "base/stage_clock.h"
 #include "evidence/brain_bench.h"
 #include "evidence/name_choice.h"
 #include "evidence/pulled_knot.h"
@@ -49,26 +51,61 @@ class Reference {
   std::vector<double> ms_;
 };
 
-/// Times `step` again and again with the reference in between; `look` follows each step and is not timed.
+/// Times of the stages of many steps.
+class StageTimes {
+ public:
+  explicit StageTimes(std::size_t steps) : steps_(steps) {}
+  void note() {
+    std::size_t k = 0;
+    for (const StageClock::Stage& s : clock_) {
+      if (k == ms_.size()) {
+        names_.push_back(s.name);
+        ms_.emplace_back().reserve(steps_);
+        ms_.back().assign(noted_, 0.0);
+      }
+      ms_[k++].push_back(s.milliseconds);
+    }
+    ++noted_;
+    clock_.clear();
+  }
+  std::vector<std::pair<std::string, double>> p50() const {
+    std::vector<std::pair<std::string, double>> list;
+    for (std::size_t k = 0; k < ms_.size(); ++k) list.emplace_back(names_[k], percentile(ms_[k], 0.5));
+    return list;
+  }
+
+ private:
+  std::size_t steps_, noted_ = 0;
+  StageClock clock_;
+  std::vector<std::string> names_;
+  std::vector<std::vector<double>> ms_;
+};
+
+/// Times `step` again and again, r.steps times at most and while `look`, which follows each step and is not timed, returns true; with the
+/// reference in between.
 template <class Step, class Look>
 void time_steps(BenchResult& r, Step step, Look look) {
   constexpr int kReferenceEvery = 40;
   Reference reference;
   std::vector<double> ms;
   ms.reserve(static_cast<std::size_t>(r.steps));
+  StageTimes stages(static_cast<std::size_t>(r.steps));
   double total = 0.0;
-  for (int k = 0; k < r.steps; ++k) {
-    if (k % kReferenceEvery == 0) reference.run();
+  for (bool more = true; more && static_cast<int>(ms.size()) < r.steps;) {
+    if (ms.size() % kReferenceEvery == 0) reference.run();
     const auto begin = Clock::now();
     step();
     ms.push_back(milliseconds_since(begin));
     total += ms.back();
-    look();
+    stages.note();
+    more = look();
   }
+  r.steps = static_cast<int>(ms.size());
   r.p50_ms = percentile(ms, 0.5);
   r.p99_ms = percentile(ms, 0.99);
   r.max_ms = percentile(ms, 1.0);
   r.real_time_factor = r.dt_ms * r.steps / total;
+  r.stages = stages.p50();
   r.reference_name = Reference::kName;
   r.reference_p50_ms = reference.p50();
 }
@@ -83,7 +120,7 @@ void bench_hanging(BenchResult& r) {
   probe.options = RodStepOptions();
   probe.options.dt = 1e-3 * r.dt_ms;
   time_steps(
-      r, [&] { probe.rod.step(probe.state, probe.memory, probe.options); }, [] {});
+      r, [&] { probe.rod.step(probe.state, probe.memory, probe.options); }, [] { return true; });
 }
 
 void bench_knot(BenchResult& r) {
@@ -91,7 +128,48 @@ void bench_knot(BenchResult& r) {
   const double radius = knot.probe.rod.material.radius;
   time_steps(
       r, [&] { knot.pull(0.03); },
-      [&] { r.contacts = std::max(r.contacts, knot.probe.rod.contact().n_touching(radius)); });
+      [&] {
+        r.contacts = std::max(r.contacts, knot.probe.rod.contact().n_touching(radius));
+        return true;
+      });
+}
+
+/// Two strands of half the nodes each, twisted together as a rope of any length is, stretched and slackened by 0.5 % twenty times a second:
+/// as many contacts as nodes, and nothing else that grows.
+void bench_rope(BenchResult& r) {
+  constexpr double kRadius = 1.6e-3, kPitch = 24.0 * kRadius;
+  const int each = r.nodes / 2;
+  Points x(3, r.nodes);
+  for (int i = 0; i < r.nodes; ++i) {
+    const double along = 2.0 * kRadius * (i < each ? i : r.nodes - 1 - i);  // there and back
+    const double turn = 2.0 * std::numbers::pi * along / kPitch + (i < each ? 0.0 : std::numbers::pi);
+    x.col(i) = Vec3(along, 1.02 * kRadius * std::cos(turn), 1.02 * kRadius * std::sin(turn));
+  }
+  RodMaterial m = RodMaterial::round_wire(kRadius, 0.18e6, 0.5, 1180.0);
+  m.drag = 1e-3;
+  RodProbe probe(m, x);
+  probe.state.alive[each - 1] = 0;
+  probe.rod.self_contact = true;
+  probe.rod.contact_material = {.stiffness = 200.0, .friction = 0.3, .presliding = 0.05 * kRadius};
+  probe.options = RodStepOptions();
+  probe.options.dt = 1e-3 * r.dt_ms;
+  probe.options.gravity.setZero();
+  probe.options.force_tolerance = 1e-6;
+  for (int i : {0, 1, each - 2, each - 1, each, each + 1, r.nodes - 2, r.nodes - 1}) probe.hold(i);
+  const double stretch = 0.005 * 2.0 * kRadius * each, start = x(0, each - 1), last_edge = 2.0 * kRadius;
+  int k = 0;
+  time_steps(
+      r,
+      [&] {
+        const double end = start + stretch * std::sin(2.0 * std::numbers::pi * 20.0 * probe.options.dt * ++k);
+        for (int i : {each - 1, each}) probe.rod.boundary.target(0, i) = end;
+        for (int i : {each - 2, each + 1}) probe.rod.boundary.target(0, i) = end - last_edge;
+        probe.rod.step(probe.state, probe.memory, probe.options);
+      },
+      [&] {
+        r.contacts = std::max(r.contacts, probe.rod.contact().n_touching(kRadius));
+        return true;
+      });
 }
 
 void bench_task(BenchResult& r, const std::string& task, const TaskOpener& open_task) {
@@ -105,6 +183,7 @@ void bench_task(BenchResult& r, const std::string& task, const TaskOpener& open_
         r.nodes = std::max(r.nodes, world.observation().n_nodes);
         r.contacts = std::max(r.contacts, world.observation().n_contacts);
         inputs = driven.inputs(world);
+        return !driven.over();
       });
 }
 
@@ -124,13 +203,26 @@ std::vector<Bench> all_benches() {
   };
   const auto hanging = [](BenchResult& r, const TaskOpener&) { bench_hanging(r); };
   const auto knot = [](BenchResult& r, const TaskOpener&) { bench_knot(r); };
-  const auto square = [](BenchResult& r, const TaskOpener& open) { bench_task(r, "knot-square", open); };
-  std::vector<Bench> list = {{stated("rod-100", 100, 2000), hanging},    {stated("knot-101", 101, 8000), knot},
-          {stated("knot-301", 301, 8000), knot},      {stated("task-knot-square", 0, 5000), square},
-          {stated("scaling-50", 50, 500), hanging},   {stated("scaling-100", 100, 500), hanging},
-          {stated("scaling-200", 200, 500), hanging}, {stated("scaling-400", 400, 500), hanging},
-          {stated("scaling-800", 800, 500), hanging}};
-  const auto timer = [](BenchResult& r, const std::function<void()>& step, const std::function<void()>& look) { time_steps(r, step, look); };
+  const auto rope = [](BenchResult& r, const TaskOpener&) { bench_rope(r); };
+  const auto task = [](const char* name) {
+    return [name](BenchResult& r, const TaskOpener& open) { bench_task(r, name, open); };
+  };
+  constexpr int kWholeTask = 100'000;  // steps, at most
+  std::vector<Bench> list = {{stated("rod-100", 100, 2000), hanging},
+                             {stated("knot-101", 101, 8000), knot},
+                             {stated("knot-301", 301, 8000), knot},
+                             {stated("task-knot-square", 0, kWholeTask), task("knot-square")},
+                             {stated("task-knot-surgeons", 0, kWholeTask), task("knot-surgeons")}};
+  for (const int n : {50, 100, 200, 400, 800}) {
+    list.push_back({stated(("scaling-" + std::to_string(n)).c_str(), n, 500), hanging});
+    list.push_back({stated(("rope-" + std::to_string(n)).c_str(), n, 500), rope});
+  }
+  const auto timer = [](BenchResult& r, const std::function<void()>& step, const std::function<void()>& look) {
+    time_steps(r, step, [&look] {
+      look();
+      return true;
+    });
+  };
   for (auto& [r, run] : brain_benches())
     list.push_back({r, [run = run, timer](BenchResult& result, const TaskOpener&) { run(result, timer); }});
   for (auto& [r, run] : vessel_benches())

@@ -20,7 +20,7 @@ struct BenchResult {
   int steps = 0;
   double p50_ms = 0.0, p99_ms = 0.0, max_ms = 0.0;
   double real_time_factor = 0.0;                       // scene time over time spent in steps
-  std::vector<std::pair<std::string, double>> stages;  // p50 [ms] of each part that is timed by itself
+  std::vector<std::pair<std::string, double>> stages;  // p50 [ms] of each part of the step
   std::string reference_name;
   double reference_p50_ms = 0.0;
 };
@@ -29,6 +29,7 @@ struct BenchResult {
 struct DrivenTask {
   std::shared_ptr<const Model> model;
   std::function<Inputs(const World&)> inputs;  // for the next step
+  std::function<bool()> over;                  // true once the hands have done all they do
 };
 using TaskOpener = std::function<DrivenTask(const std::string& task)>;
 using BenchProgress = std::function<void(const BenchResult&)>;

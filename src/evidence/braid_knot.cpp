@@ -33,9 +33,9 @@ std::vector<Vec3> braid_strand(int half_turns, double h, double side) {
 }
 
 /// From the lower left end of the braid round to its lower right end: an ellipse drawn out at its mouth.
-void append_loop(double braid_width, double h, std::vector<Vec3>& curve) {
+void append_loop(double braid_width, double h, double loop, std::vector<Vec3>& curve) {
   constexpr int kSteps = 80;
-  const double high = std::max(0.5 * braid_width + 0.01, 0.045), wide = 1.15 * high;
+  const double high = std::max(0.5 * braid_width + 0.01, loop), wide = 1.15 * high;
   const double top = high * std::sin(0.5 * kPi + kMouth);
   const double stretch = 0.5 * braid_width / (wide * std::sin(kMouth));
   for (int k = 1; k < kSteps; ++k) {
@@ -65,20 +65,20 @@ Points even_and_smooth(const std::vector<Vec3>& curve, double spacing) {
 
 }  // namespace
 
-Points braid_knot_curve(int n, double h) {
+Points braid_knot_curve(int n, double h, double loop) {
   const int half_turns = 2 * n + 1;
   const std::vector<Vec3> left = braid_strand(half_turns, h, -1.0), right = braid_strand(half_turns, h, 1.0);
   std::vector<Vec3> curve;
   constexpr int kTailSteps = 40;
   for (int k = kTailSteps; k >= 1; --k) curve.push_back(left.back() + Vec3(kTail * k / kTailSteps, 0, 0));
   curve.insert(curve.end(), left.rbegin(), left.rend());
-  append_loop(half_turns * 14.0 * h, h, curve);
+  append_loop(half_turns * 14.0 * h, h, loop, curve);
   curve.insert(curve.end(), right.begin(), right.end());
   for (int k = 1; k <= kTailSteps; ++k) curve.push_back(right.back() - Vec3(kTail * k / kTailSteps, 0, 0));
   return even_and_smooth(curve, 2.0 * h);
 }
 
-BraidKnot::BraidKnot(int n, double friction) : probe(braid_material(), braid_knot_curve(n, kRadius)) {
+BraidKnot::BraidKnot(int n, double friction, double loop) : probe(braid_material(), braid_knot_curve(n, kRadius, loop)) {
   const int last = probe.state.n - 1;
   probe.rod.self_contact = true;
   probe.rod.contact_material.stiffness = 200.0;

@@ -6,11 +6,12 @@
 
 namespace filum {
 
-/// Nodes [m] of such a knot for a rod of radius h [m], one diameter apart; the ends leave along the braid, apart from each other.
-Points braid_knot_curve(int n, double h);
+/// Nodes [m] of such a knot for a rod of radius h [m], one diameter apart; the ends leave along the braid, apart from each other. `loop`: half
+/// the height of the loop [m].
+Points braid_knot_curve(int n, double h, double loop = 0.045);
 
 struct BraidKnot {
-  BraidKnot(int n, double friction);
+  BraidKnot(int n, double friction, double loop = 0.045);
 
   /// One step; each end moves by speed * dt.
   RodStepSummary pull(double speed);

@@ -119,10 +119,61 @@ void list_momentum(ProblemList& list) {
   list.push_back({p, [](ValidationProblem& r) { r.got = momentum_drift()[1]; }});
 }
 
+/// Period [s] of the slowest vibration along the axis (or about it, if `twist`) of a rod clamped at one end, 1 m long with a wave speed of
+/// 1 m/s.
+double wave_period(int edges, bool twist) {
+  const double edge = 1.0 / (twist ? edges - 0.5 : edges), dt = 0.01;
+  RodMaterial m;
+  m.radius = 1e-3;
+  m.density = 1.0 / (kPi * m.radius * m.radius);  // 1 kg/m
+  m.EA = 1.0;
+  m.GJ = 0.5 * m.radius * m.radius;  // the section's moment of inertia
+  m.EI = 0.0;
+  m.drag = 0.0;
+  RodProbe probe(m, nodes_on_x(edges + 1, twist ? -0.5 * edge : 0.0, edge));
+  probe.hold(0);
+  probe.options.dt = dt;
+  probe.options.relative_tolerance = 0.0;
+  probe.options.force_tolerance = 1e-15;
+  probe.options.max_iterations = 3;  // linear
+  for (int i = 1; i <= edges; ++i) {
+    if (twist) probe.hold_position(i);
+    else probe.hold_angle(i);
+    if (twist && i < edges) probe.state.theta_dot[i] = 1e-3 * std::sin(0.5 * kPi * edge * i);
+    if (!twist) probe.state.v(0, i) = 1e-6 * std::sin(0.5 * kPi * edge * i);
+  }
+  const auto end = [&] { return twist ? probe.state.theta[edges - 1] : probe.state.x(0, edges) - 1.0; };
+  double before = 0.0;
+  for (int k = 1; k < 1000; ++k) {
+    if (!probe.rod.midpoint_step(probe.state, probe.memory, probe.options).sound) break;
+    const double after = end();
+    if (k > 1 && before * after <= 0.0) return 2.0 * dt * (k - after / (after - before));
+    before = after;
+  }
+  return 0.0;
+}
+
+void list_waves(ProblemList& list) {
+  for (const bool twist : {false, true}) {
+    ValidationProblem p;
+    p.name = twist ? "twist-wave" : "stretch-wave";
+    p.source = twist ? "d'Alembert: 4 L/c, c = sqrt(G/rho), one end clamped, the other free" : "d'Alembert: 4 L/c, c = sqrt(E/rho), one end clamped, the other free";
+    p.quantity = "period of the slowest vibration, over L/c";
+    p.expected = 4.0;
+    p.tolerance = 1e-3;
+    p.least_order = 1.8;
+    list.push_back({p, [twist](ValidationProblem& r) {
+                      r.got = wave_period(80, twist);
+                      r.order = observed_order(wave_period(20, twist), wave_period(40, twist), r.got);
+                    }});
+  }
+}
+
 }  // namespace
 
 void list_dynamics(ProblemList& list) {
   list_frequency(list);
+  list_waves(list);
   list_momentum(list);
 }
 

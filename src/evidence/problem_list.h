@@ -22,6 +22,8 @@ void list_dynamics(ProblemList& list);  // vibration, momentum
 void list_twist(ProblemList& list);     // twisting and its instabilities
 void list_friction(ProblemList& list);  // sliding on a plane and round a bar
 void list_knots(ProblemList& list);     // tight knots
+void list_plectoneme(ProblemList& list);  // a twisted rod wound round itself
+void list_passages(ProblemList& list);  // that there are none
 void list_tissue(ProblemList& list);    // brain: elements, time, half space, solvers
 void list_spatula(ProblemList& list);   // blade on tissue
 void list_vessel(ProblemList& list);    // tubes, the carotid, the ring

@@ -88,36 +88,45 @@ void list_sled(ProblemList& list) {
                   }});
 }
 
+/// Nodes of a thread that hangs down on both sides of a bar of radius R (of the thread's axis) along y.
+Points over_the_bar(int n, double R, double edge, double hang) {
+  Points nodes(3, n);
+  for (int i = 0; i < n; ++i) {
+    const double s = edge * i - hang, a = std::clamp(s / R, 0.0, kPi);
+    nodes.col(i) = Vec3(-R * std::cos(a), 0.0, R * std::sin(a));
+    if (s < 0.0) nodes(2, i) = s;
+    if (s > kPi * R) nodes(2, i) = kPi * R - s;
+  }
+  return nodes;
+}
+
+void put_bar(RodProbe& probe, double radius, double mu) {
+  Obstacle bar;
+  bar.a_B = Vec3(0, -5e-3, 0);
+  bar.b_B = Vec3(0, 5e-3, 0);
+  bar.r_a = bar.r_b = radius;
+  bar.friction = mu;
+  probe.rod.obstacles.bodies.resize(1);
+  probe.rod.obstacles.obstacles.push_back(bar);
+  probe.options.dt = 1e-3;
+  probe.options.relative_tolerance = 1e-6;
+}
+
 /// Ratio of the tensions of a limp thread drawn over half of a round bar. Slack side: 1 N.
 double capstan_ratio(double mu) {
   constexpr double kBar = 10e-3, kThread = 0.1e-3, kEdge = 0.4e-3, kHang = 10e-3;
   const double R = kBar + kThread;
   const int n = static_cast<int>((kPi * R + 2.0 * kHang) / kEdge) + 1;
-  Points nodes(3, n);
-  for (int i = 0; i < n; ++i) {
-    const double s = kEdge * i - kHang, a = std::clamp(s / R, 0.0, kPi);
-    nodes.col(i) = Vec3(-R * std::cos(a), 0.0, R * std::sin(a));
-    if (s < 0.0) nodes(2, i) = s;
-    if (s > kPi * R) nodes(2, i) = kPi * R - s;
-  }
   RodMaterial m;
   m.radius = kThread;
   m.EI = m.GJ = 1e-7;  // T R^2/B = 1000: limp
   m.EA = 1e4;
   m.drag = 1.0;
-  RodProbe probe(m, nodes);
+  RodProbe probe(m, over_the_bar(n, R, kEdge, kHang));
+  put_bar(probe, kBar, mu);
   probe.rod.contact_material.stiffness = 1e5;
-  Obstacle bar;
-  bar.a_B = Vec3(0, -5e-3, 0);
-  bar.b_B = Vec3(0, 5e-3, 0);
-  bar.r_a = bar.r_b = kBar;
-  bar.friction = mu;
-  probe.rod.obstacles.bodies.resize(1);
-  probe.rod.obstacles.obstacles.push_back(bar);
   probe.rod.boundary.load(2, 0) = -1.0;
   probe.hold(n - 1);
-  probe.options.dt = 1e-3;
-  probe.options.relative_tolerance = 1e-6;
   double sum = 0.0;
   constexpr int kSteps = 600, kCounted = 200;
   for (int k = 0; k < kSteps; ++k) {
@@ -138,12 +147,67 @@ void list_capstan(ProblemList& list, double mu, const char* label) {
   list.push_back({p, [mu](ValidationProblem& r) { r.got = capstan_ratio(mu); }});
 }
 
+/// Half a turn of a rod whose stiffness counts. A free end under the force T leaves the bar at the angle psi before its force's own
+/// tangent: along it B kappa^2/2 + T cos(angle to T) does not change and is T far away, so that with kappa = 1/R, cos psi = 1 - B/(2 T R^2).
+/// There the bar presses with T sin(psi) at a point, and the tension steps by mu of that; between, on the arc pi - psi_1 - psi_2, the
+/// moment is B/R throughout and the tension T cos(psi) grows as exp(mu angle).
+double stiff_capstan_ratio(double mu, double stiffness /* B/(T_1 R^2) */) {
+  const auto leaves = [&](double T) { return std::acos(1.0 - 0.5 * stiffness / T); };  // T in units of T_1
+  const double slack = leaves(1.0);
+  double T = std::exp(mu * kPi);
+  for (int k = 0; k < 60; ++k) {  // a contraction: T counts little in its own angle
+    const double pulled = leaves(T), inside = (std::cos(slack) + mu * std::sin(slack)) * std::exp(mu * (kPi - slack - pulled));
+    T = inside / (std::cos(pulled) - mu * std::sin(pulled));
+  }
+  return T;
+}
+
+/// The same from the rod: drawn over the bar until the ratio of the forces at its ends stays. Both ends are free to move sideways.
+double stiff_capstan_measured(double mu, double stiffness, double edge) {
+  constexpr double kBar = 10e-3, kThread = 0.1e-3, kHang = 80e-3;
+  const double R = kBar + kThread;
+  const int n = static_cast<int>((kPi * R + 2.0 * kHang) / edge) + 1;
+  RodMaterial m;
+  m.radius = kThread;
+  m.EI = m.GJ = stiffness * R * R;  // T_1 is 1 N
+  m.EA = 1e4;
+  m.drag = 0.5;
+  RodProbe probe(m, over_the_bar(n, R, edge, kHang));
+  put_bar(probe, kBar, mu);
+  probe.rod.contact_material.stiffness = 1e6;
+  probe.rod.boundary.load(2, 0) = -1.0;
+  probe.rod.boundary.held.row(1).head(n).setConstant(true);
+  probe.rod.boundary.held(2, n - 1) = probe.rod.boundary.held(3, n - 1) = true;
+  probe.rod.boundary.target(2, n - 1) = probe.state.x(2, n - 1);
+  constexpr int kSteps = 600, kCounted = 200;
+  double sum = 0.0;
+  for (int k = 0; k < kSteps; ++k) {
+    probe.rod.boundary.target(2, n - 1) -= 5e-3 * probe.options.dt;
+    if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNan;
+    if (k >= kSteps - kCounted) sum += edge_tension(m, probe.state, n - 3) / edge_tension(m, probe.state, 1);
+  }
+  return sum / kCounted;
+}
+
+void list_stiff_capstan(ProblemList& list, double stiffness, const char* label) {
+  constexpr double mu = 0.3;
+  ValidationProblem p;
+  p.name = std::string("capstan-stiff-").append(label);
+  p.source = "Lift-off by the elastica's first integral, Coulomb at the two points and along the arc (Singh, J. Elasticity 151:321, 2022)";
+  p.quantity = std::string("ratio of tensions over half a turn, mu = 0.3, T R^2/B = ").append(label) + " (without stiffness 2.566)";
+  p.expected = stiff_capstan_ratio(mu, stiffness);
+  p.tolerance = 2e-2;
+  list.push_back({p, [=](ValidationProblem& r) { r.got = stiff_capstan_measured(mu, stiffness, 0.8e-3); }});
+}
+
 }  // namespace
 
 void list_friction(ProblemList& list) {
   list_sled(list);
   list_capstan(list, 0.1, "0.1");
   list_capstan(list, 0.3, "0.3");
+  list_stiff_capstan(list, 0.2, "5");
+  list_stiff_capstan(list, 1.0, "1");
 }
 
 }  // namespace filum

@@ -16,6 +16,8 @@ ProblemList all_problems() {
   list_twist(list);
   list_friction(list);
   list_knots(list);
+  list_plectoneme(list);
+  list_passages(list);
   list_tissue(list);
   list_spatula(list);
   list_vessel(list);

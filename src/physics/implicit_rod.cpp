@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/stage_clock.h"
+
 namespace filum {
 namespace {
 
@@ -59,6 +61,7 @@ RodMemory ImplicitRod::make_memory() const {
 }
 
 RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {
+  const StageScope stage("thread, rest");
   RodStepSummary summary;
   soften_rest(s, o.dt);
   begin(s, memory, o);
@@ -144,6 +147,7 @@ void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodS
 /// Fraction of move_ that crosses nothing; finds the near pairs again if the move reaches beyond those known, and goes no
 /// further than they reach.
 double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept {
+  const StageScope stage("crossings");
   double fraction = 1.0;
   if (self_contact && length > kLongestReach * material.radius) fraction = kLongestReach * material.radius / length;
   if (travelled_ + fraction * length > reach_) {
@@ -158,6 +162,7 @@ double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, do
 
 /// Goes `fraction` of move_ if the energy there is at most `highest`.
 bool ImplicitRod::try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept {
+  const StageScope stage("line search");
   x_trial_.leftCols(s.n) = x_.leftCols(s.n) + fraction * move_.leftCols(s.n).topRows<3>();
   theta_trial_.head(s.n) = theta_.head(s.n) + fraction * move_.leftCols(s.n).row(3).transpose();
   update_geometry(s, x_trial_, theta_trial_, geometry_);
@@ -170,6 +175,7 @@ bool ImplicitRod::try_move(const RodState& s, double fraction, double highest, c
 }
 
 void ImplicitRod::find_near(const RodState& s, const RodMemory& memory, double reach) noexcept {
+  const StageScope stage("near pairs");
   reach_ = reach;
   travelled_ = 0.0;
   if (self_contact) {  // where strands crowd, a shorter reach leaves room for every pair
@@ -186,6 +192,7 @@ void ImplicitRod::find_near(const RodState& s, const RodMemory& memory, double r
 }
 
 void ImplicitRod::fit_pattern(int n) noexcept {
+  const StageScope stage("elimination order");
   if (pattern_n_ == n && !contact_.pattern_stale()) {
     contact_.find_slots(matrix_);
     return;
@@ -232,6 +239,7 @@ bool ImplicitRod::advance_boundary(const RodState& s) noexcept {
 }
 
 void ImplicitRod::assemble_gradient(const RodState& s, const RodStepOptions& o) noexcept {
+  const StageScope stage("forces");
   gradient_.leftCols(s.n) = -boundary.load.leftCols(s.n);
   const double rho = material.mass_per_length();
   const double dt = o.dt;
@@ -253,6 +261,7 @@ void ImplicitRod::assemble_gradient(const RodState& s, const RodStepOptions& o) 
 }
 
 void ImplicitRod::assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept {
+  const StageScope stage("stiffness");
   matrix_.set_zero();
   const double dt = o.dt;
   for (int i = 0; i < s.n; ++i) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "base/stage_clock.h"
 #include "collision/segment_distance.h"
 
 namespace filum {
@@ -169,6 +170,7 @@ void RodContact::remember(std::vector<ContactBristle>& memory) const noexcept {
 }
 
 void RodContact::update(const Points& x, double radius, const ContactMaterial& m, double share) noexcept {
+  const StageScope stage("contact laws");
   for (RodPair& p : pairs_) {
     const SegmentPair c = measure(x, p.i, p.j);
     p.s = c.s;

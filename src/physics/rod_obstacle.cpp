@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/stage_clock.h"
 #include "collision/segment_distance.h"
 
 namespace filum {
@@ -142,6 +143,7 @@ Vec3 RodObstacles::trial_bristle(const ObstacleTouch& t, const Points& x, const 
 }
 
 void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m, double share) noexcept {
+  const StageScope stage("contact laws");
   for (ObstacleTouch& t : touches_) {
     measure(x, radius, t);
     t.force = t.gap < 0.0 ? -m.wall_ratio * m.stiffness * t.gap : 0.0;

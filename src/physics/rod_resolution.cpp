@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stage_clock.h"
+
 namespace filum {
 namespace {
 
@@ -137,6 +139,7 @@ void remove_node(RodState& s, int i) noexcept {
 
 int adapt_resolution(const ResolutionOptions& o, int capacity, double radius, const RodContact& contact, const RodObstacles& obstacles,
                      RodState& s, RodMemory& memory) noexcept {
+  const StageScope stage("resolution");
   const Near near{contact, obstacles};
   int changes = 0;
   // From the far end: a change renumbers only what lies behind it, so the pairs of what is still ahead stay valid.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stage_clock.h"
 #include "world/needle_model.h"
 
 namespace filum {
@@ -86,6 +87,7 @@ void NeedleScene::meet_tools(State& s, const std::vector<ObstacleBody>& from, Ob
 }
 
 void NeedleScene::before_thread(const State& s, ImplicitRod& rod) noexcept {
+  const StageScope stage("needle and tissue");
   body_.tethers.clear();
   std::vector<RodTether>& on_thread = rod.tethers.list;
   on_thread.clear();
@@ -96,6 +98,7 @@ void NeedleScene::before_thread(const State& s, ImplicitRod& rod) noexcept {
 }
 
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {
+  const StageScope stage("needle and tissue");
   thread_pull_ = rod.tethers.list.front().force.norm();
   RodTether swage;
   swage.stiffness = kSwage * Mat3::Identity();

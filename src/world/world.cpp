@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stage_clock.h"
 #include "world/brain_scene.h"
 #include "world/fixtures.h"
 #include "world/measured_model.h"
@@ -115,6 +116,7 @@ void World::Impl::start_brain() {
 }
 
 void World::Impl::step_brain(const Inputs& inputs) noexcept {
+  const StageScope stage("brain");
   brain->step(inputs, state.brain, state.valid, observation);
   ++state.step;
   observe();
@@ -155,6 +157,7 @@ void World::Impl::read_inputs(const Inputs& inputs) noexcept {
 }
 
 void World::Impl::move_instruments() noexcept {
+  const StageScope stage("instruments");
   for (std::size_t i = 0; i < commands.size(); ++i) rod.obstacles.bodies[i].X_start = state.instruments[i].X_WT;
   if (!pellets.empty()) pellets.limit_jaws(model->instruments, state.instruments, state.pellets, commands);
   if (needle) needle->limit_jaws(state, commands);
@@ -177,6 +180,7 @@ void World::Impl::move_instruments() noexcept {
 }
 
 void World::Impl::open_and_close_jaws() noexcept {
+  const StageScope stage("jaws");
   if (needle) needle->meet_tools(state, rod.obstacles.bodies, observation);
   for (int i = 0; i < static_cast<int>(commands.size()); ++i) {
     if (needle && NeedleScene::held_by(state, i)) continue;
@@ -282,6 +286,7 @@ void World::Impl::part_overloaded_thread() noexcept {
 }
 
 void World::Impl::observe() noexcept {
+  const StageScope stage("observation");
   fill_observation(*model, state, rod, solver, observation);
   if (needle) needle->observe(state, observation);
   if (brain) brain->observe(state.brain, state.valid, observation);

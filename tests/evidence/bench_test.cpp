@@ -25,6 +25,41 @@ TEST(Bench, TimesAreOrderedAndTheReferenceIsTimedBesideThem) {
   EXPECT_GT(r.reference_p50_ms, 0.0);
 }
 
+TEST(Bench, TheStagesOfAStepAddUpToIt) {
+  const BenchResult r = run_benches({"rope-50"}, no_task)[0];
+  EXPECT_GT(r.contacts, 20);
+  double sum = 0.0;
+  bool solves = false;
+  for (const auto& [name, ms] : r.stages) {
+    sum += ms;
+    solves = solves || (name == "linear system" && ms > 0.0);
+  }
+  EXPECT_TRUE(solves);
+  EXPECT_GT(sum, 0.5 * r.p50_ms);  // medians of parts do not add up exactly
+  EXPECT_LT(sum, 1.5 * r.p50_ms);
+}
+
+TEST(Bench, ATaskIsTimedUntilItsHandsAreDone) {
+  int steps = 0;
+  const TaskOpener opener = [&](const std::string& task) {
+    EXPECT_EQ(task, "knot-square");
+    DrivenTask driven;
+    driven.model = load_model(FILUM_SOURCE_DIR, task);
+    driven.inputs = [&](const World&) {
+      ++steps;
+      return Inputs();
+    };
+    driven.over = [&] { return steps > 20; };
+    return driven;
+  };
+  const BenchResult r = run_benches({"task-knot-square"}, opener)[0];
+  EXPECT_EQ(r.steps, 20);
+  EXPECT_GT(r.nodes, 10);
+  bool observes = false;
+  for (const auto& [name, ms] : r.stages) observes = observes || name == "observation";
+  EXPECT_TRUE(observes);
+}
+
 TEST(Bench, ANameStandsForThoseThatBeginWithIt) {
   std::size_t scaling = 0;
   for (const std::string& name : bench_names()) scaling += name.starts_with("scaling-") ? 1 : 0;

@@ -1,5 +1,7 @@
 filum_test(evidence/bench filum_evidence)
-filum_test(evidence/validation filum_evidence)
+foreach(name linked_strands linking plectoneme validation)
+  filum_test(evidence/${name} filum_evidence)
+endforeach()
 if(TARGET filum)
   find_package(nlohmann_json REQUIRED)
   filum_test(evidence/json nlohmann_json::nlohmann_json)
