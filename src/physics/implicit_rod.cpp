@@ -198,6 +198,7 @@ void ImplicitRod::fit_pattern(int n) noexcept {
     return;
   }
   pattern_n_ = n;
+  stiffness_fits_ = false;
   matrix_.begin_pattern(n);
   for (int i = 0; i + 1 < n; ++i) matrix_.connect(i, i + 1);
   for (int i = 0; i + 2 < n; ++i) matrix_.connect(i, i + 2);
@@ -274,10 +275,29 @@ void ImplicitRod::assemble_stiffness(const RodState& s, const RodStepOptions& o,
     matrix_.add_diagonal(i, block);
   }
   add_elastic_hessian(stiffened_, s, geometry_, kind, chain_, matrix_);
-  if (self_contact) contact_.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
-  obstacles.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
   grasps.add_stiffness(chain_, matrix_);
   tethers.add_stiffness(x_, o.dt, chain_, matrix_);
+  matrix_.keep();
+  stiffness_fits_ = true;
+  kind_kept_ = kind;
+}
+
+/// The matrix of the contacts expected now on top of what does not depend on them, and the right-hand side.
+void ImplicitRod::add_contact_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept {
+  const StageScope stage("stiffness");
+  if (contact_.pattern_stale()) fit_pattern(s.n);
+  if (stiffness_fits_ && kind == kind_kept_) {
+    matrix_.go_back();
+  } else {
+    assemble_stiffness(s, o, kind);
+  }
+  move_.leftCols(s.n) = -gradient_.leftCols(s.n);
+  if (self_contact) {
+    contact_.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
+    contact_.add_expected(material.radius, contact_material, chain_, move_, matrix_);
+  }
+  obstacles.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
+  obstacles.add_expected(contact_material, chain_, move_, matrix_);
 }
 
 /// The largest tension or contact force [N]: what an unbalanced force is small against.
@@ -294,11 +314,7 @@ double ImplicitRod::force_scale(const RodState& s) const noexcept {
 /// throw nodes about, else that of Gauss and Newton (compressed strands make it so).
 bool ImplicitRod::solve_direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept {
   for (;;) {
-    if (contact_.pattern_stale()) fit_pattern(s.n);
-    assemble_stiffness(s, o, kind);
-    move_.leftCols(s.n) = -gradient_.leftCols(s.n);
-    if (self_contact) contact_.add_expected(material.radius, contact_material, chain_, move_, matrix_);
-    obstacles.add_expected(contact_material, chain_, move_, matrix_);
+    add_contact_stiffness(s, o, kind);
     const bool factored = matrix_.factor();
     double length = 0.0;
     if (factored) {
@@ -320,8 +336,8 @@ bool ImplicitRod::solve_direction(const RodState& s, const RodStepOptions& o, St
 bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept {
   for (int round = 0; round < kMostRounds; ++round) {
     if (!solve_direction(s, o, kind, summary)) return false;
-    const bool strands = self_contact && contact_.expect(move_, material.radius);
-    const bool bodies = obstacles.expect(move_, material.radius);
+    const bool strands = self_contact && contact_.expect(move_, material.radius, contact_material);
+    const bool bodies = obstacles.expect(move_, material.radius, contact_material);
     if (!strands && !bodies) break;
   }
   return true;
@@ -330,6 +346,7 @@ bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffnes
 /// Newton step. Expected contacts that contradict each other can lead uphill; then the direction that knows of none is taken.
 bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o, RodStepSummary& summary) noexcept {
   Stiffness kind = Stiffness::exact;
+  stiffness_fits_ = false;
   if (!direction(s, o, kind, summary)) return false;
   if (advance(s, memory, o)) return true;
   fit_geometry(s);

@@ -86,6 +86,7 @@ class ImplicitRod {
   bool advance_boundary(const RodState& s) noexcept;
   void assemble_gradient(const RodState& s, const RodStepOptions& o) noexcept;
   void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
+  void add_contact_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
   double force_scale(const RodState& s) const noexcept;
   bool solve_direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept;
   bool direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept;
@@ -112,6 +113,8 @@ class ImplicitRod {
   double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
   double travelled_ = 0.0;
   bool geometry_fits_ = false;  // geometry_ is that of x_ and theta_
+  bool stiffness_fits_ = false; // what the matrix keeps is the stiffness without contacts at x_ and theta_, of kind_kept_
+  Stiffness kind_kept_ = Stiffness::exact;
 };
 
 }  // namespace filum

@@ -37,11 +37,14 @@ Vec3 trial_bristle(const RodPair& p, const Points& x, const Points& x_start) noe
 
 }  // namespace
 
+PairPotential squeeze(double overlap, double radius, double stiffness) noexcept {
+  if (overlap <= 0.0) return {0, 0, 0};
+  const double force = stiffness * overlap * std::sqrt(overlap / (0.6 * radius));
+  return {0.4 * force * overlap, -force, 1.5 * force / overlap};
+}
+
 PairPotential pair_potential(double distance, double radius, double stiffness) noexcept {
-  PairPotential r{0, 0, 0};
-  const double overlap = 2.0 * radius - distance;
-  if (overlap <= 0.0) return r;
-  r = {0.5 * stiffness * overlap * overlap, -stiffness * overlap, stiffness};
+  PairPotential r = squeeze(2.0 * radius - distance, radius, stiffness);
   if (distance < radius) {
     const double q = distance / radius, c = distance - radius, log = std::log(q);
     r.energy -= stiffness * c * c * log;
@@ -197,7 +200,8 @@ void RodContact::add_gradient(const Points& x, const Points& x_start, const Cont
                               Eigen::Matrix4Xd& gradient) noexcept {
   for (RodPair& p : pairs_) {
     if (p.force <= 0.0) continue;
-    p.friction = coulomb(trial_bristle(p, x, x_start), p.normal, p.load, m.friction, m.stick(m.friction, p.load));
+    p.trial = trial_bristle(p, x, x_start);
+    p.model = p.friction = coulomb(p.trial, p.normal, p.load, m.friction, m.stick(m.friction, p.load));
     const Vec3 force = p.force * p.normal + p.friction.force;  // on the first edge
     const Weights w = weights(p);
     for (int a = 0; a < 4; ++a) gradient.col(w.node[a]).head<3>() -= w.w[a] * force;
@@ -209,7 +213,7 @@ void RodContact::add_stiffness(const Points& x, double radius, const ContactMate
   for (const RodPair& p : pairs_) {
     if (p.force <= 0.0) continue;
     const double curvature = pair_potential(p.distance, radius, m.stiffness).curvature;
-    const Mat3 k = curvature * p.normal * p.normal.transpose() + p.friction.stiffness;
+    const Mat3 k = curvature * p.normal * p.normal.transpose() + p.model.stiffness;
     add_block(p, k, chain, matrix);
     add_tilt(p, x, chain, matrix);
   }
@@ -239,14 +243,23 @@ void RodContact::add_block(const RodPair& p, const Mat3& k, const ChainSlots& ch
 }
 
 void RodContact::forget_expected() noexcept {
-  for (RodPair& p : pairs_) p.expected = false;
+  for (RodPair& p : pairs_) {
+    p.expected = false;
+    p.model = p.friction;
+  }
 }
 
-bool RodContact::expect(const Eigen::Matrix4Xd& move, double radius) noexcept {
+bool RodContact::expect(const Eigen::Matrix4Xd& move, double radius, const ContactMaterial& m) noexcept {
   bool changed = false;
   for (RodPair& p : pairs_) {
-    if (p.force > 0.0) continue;
     const Weights w = weights(p);
+    if (p.force > 0.0) {
+      Vec3 slip = p.trial;
+      for (int a = 0; a < 4; ++a) slip += w.w[a] * move.col(w.node[a]).head<3>();
+      slip -= slip.dot(p.normal) * p.normal;
+      changed = expect_friction(slip, p.trial, p.normal, p.load, m.friction, m.stick(m.friction, p.load), p.model) || changed;
+      continue;
+    }
     double gap = p.distance - 2.0 * radius;
     for (int a = 0; a < 4; ++a) gap += w.w[a] * p.normal.dot(move.col(w.node[a]).head<3>());
     const bool touches = gap < (p.expected ? 0.0 : -1e-4 * radius);
@@ -260,11 +273,15 @@ bool RodContact::expect(const Eigen::Matrix4Xd& move, double radius) noexcept {
 void RodContact::add_expected(double radius, const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
                               BlockCholesky& matrix) const noexcept {
   for (const RodPair& p : pairs_) {
-    if (!p.expected) continue;
-    const Vec3 pull = -m.stiffness * (p.distance - 2.0 * radius) * p.normal;  // towards the surface
     const Weights w = weights(p);
+    if (p.force > 0.0) {
+      for (int a = 0; a < 4; ++a) rhs.col(w.node[a]).head<3>() += w.w[a] * (p.model.force - p.friction.force);
+      continue;
+    }
+    if (!p.expected) continue;
+    const Vec3 pull = -expected_stiffness(m.stiffness) * (p.distance - 2.0 * radius) * p.normal;  // towards the surface
     for (int a = 0; a < 4; ++a) rhs.col(w.node[a]).head<3>() += w.w[a] * pull;
-    add_block(p, m.stiffness * p.normal * p.normal.transpose(), chain, matrix);
+    add_block(p, expected_stiffness(m.stiffness) * p.normal * p.normal.transpose(), chain, matrix);
   }
 }
 

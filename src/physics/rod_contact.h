@@ -25,7 +25,7 @@ namespace filum {
 
 struct ContactMaterial {
   double stiffness = 1e4;             // [N/m], normal, each pair of edges
-  double wall_ratio = 0.3;            // [-], stiffness against bars and sheet, each edge, of that between strands
+  double wall_ratio = 0.1;            // [-], stiffness against bars and sheet, each edge, of that between strands
   double tangential_ratio = 0.7;      // [-], k_t / k (Mindlin: 2(1-nu)/(2-nu), about 0.75 at nu 0.4)
   double friction = 0.2;              // [-]
   double presliding = 0.6e-6;         // [m], give of a contact before it slips, at light load (friction.h)
@@ -50,7 +50,9 @@ struct RodPair {
   bool expected = false;              // not touching yet, but would after the Newton step
   bool joined = false;                // has its blocks in the matrix: near enough to touch soon
   Vec3 xi_start = Vec3::Zero();       // [m], bristle at the start of the step
+  Vec3 trial = Vec3::Zero();          // [m], bristle before return mapping
   FrictionPoint friction;
+  FrictionPoint model;                // tangent of friction that the Newton step goes by
   BlockCholesky::Slot slots[4];       // blocks (i,j), (i,j+1), (i+1,j), (i+1,j+1)
 };
 
@@ -89,7 +91,7 @@ class RodContact {
   /// Looks where `move` would lead: pairs that would overlap, to first order, are expected to touch, those expected before that
   /// would part again are not. True if the set changed. Without this a strand could only creep up on another one, halving the
   /// gap with every Newton step.
-  bool expect(const Eigen::Matrix4Xd& move, double radius) noexcept;
+  bool expect(const Eigen::Matrix4Xd& move, double radius, const ContactMaterial& m) noexcept;
   void forget_expected() noexcept;
   /// Adds the springs of the expected pairs, at rest at the surface, to the right-hand side and the matrix.
   void add_expected(double radius, const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
@@ -127,7 +129,13 @@ inline double tilt_stiffness(double force, double distance, double edge_squared,
 struct PairPotential {
   double energy, slope, curvature;  // [J], [N], [N/m]
 };
+/// Hertz contact of a round thread: F = k o sqrt(o / 0.6 h), o the overlap, h the radius; k is the secant stiffness where o = 0.6 h.
+PairPotential squeeze(double overlap, double radius, double stiffness) noexcept;
 PairPotential pair_potential(double distance, double radius, double stiffness) noexcept;
+
+
+/// Stiffness of the spring that stands for a contact that is only expected: that of a light one.
+inline double expected_stiffness(double stiffness) noexcept { return 0.3 * stiffness; }
 
 /// Fraction of a move for two segments (ends a0, a1, b0, b1 with displacements da0 ...) that keeps them apart, by
 /// conservative advancement. `keep` [m]: distance of the axes at which the advance stops (0 < keep < present distance).

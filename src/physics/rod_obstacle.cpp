@@ -29,7 +29,7 @@ void add_block(const ObstacleTouch& t, const Mat3& k, const ChainSlots& chain, B
 }
 
 /// Contact spring of a wall: like the strands' own but without the barrier, since a bar is thick.
-double wall_energy(double gap, double k) noexcept { return gap < 0.0 ? 0.5 * k * gap * gap : 0.0; }
+PairPotential wall(double gap, double radius, const ContactMaterial& m) noexcept { return squeeze(-gap, radius, m.wall_ratio * m.stiffness); }
 
 }  // namespace
 
@@ -146,7 +146,7 @@ void RodObstacles::update(const Points& x, double radius, const ContactMaterial&
   const StageScope stage("contact laws");
   for (ObstacleTouch& t : touches_) {
     measure(x, radius, t);
-    t.force = t.gap < 0.0 ? -m.wall_ratio * m.stiffness * t.gap : 0.0;
+    t.force = -wall(t.gap, radius, m).slope;
     t.load += share * (t.force - t.load);
     t.expected = false;
   }
@@ -157,7 +157,7 @@ double RodObstacles::energy(const Points& x, const Points& x_start, double radiu
   for (const ObstacleTouch& t : touches_) {
     ObstacleTouch trial = t;
     measure(x, radius, trial);
-    u += wall_energy(trial.gap, m.wall_ratio * m.stiffness);
+    u += wall(trial.gap, radius, m).energy;
     const double mu = obstacles[static_cast<std::size_t>(t.obstacle)].friction;
     if (t.force > 0.0) u += coulomb(trial_bristle(t, x, x_start), t.normal, t.load, mu, m.stick(mu, t.load)).energy;
   }
@@ -170,7 +170,8 @@ void RodObstacles::add_gradient(const Points& x, const Points& x_start, double r
   for (ObstacleTouch& t : touches_) {
     if (t.force <= 0.0) continue;
     const Obstacle& o = obstacles[static_cast<std::size_t>(t.obstacle)];
-    t.friction = coulomb(trial_bristle(t, x, x_start), t.normal, t.load, o.friction, m.stick(o.friction, t.load));
+    t.trial = trial_bristle(t, x, x_start);
+    t.model = t.friction = coulomb(t.trial, t.normal, t.load, o.friction, m.stick(o.friction, t.load));
     const Vec3 on_thread = t.force * t.normal + t.friction.force;
     gradient.col(t.edge).head<3>() -= (1.0 - t.s) * on_thread;
     gradient.col(t.edge + 1).head<3>() -= t.s * on_thread;
@@ -185,7 +186,7 @@ void RodObstacles::add_stiffness(const Points& x, double radius, const ContactMa
                                  BlockCholesky& matrix) const noexcept {
   for (const ObstacleTouch& t : touches_) {
     if (t.force <= 0.0) continue;
-    const Mat3 k = m.wall_ratio * m.stiffness * t.normal * t.normal.transpose() + t.friction.stiffness;
+    const Mat3 k = wall(t.gap, radius, m).curvature * t.normal * t.normal.transpose() + t.model.stiffness;
     add_block(t, k, chain, matrix);
     const auto b = static_cast<std::size_t>(t.obstacle);
     if (obstacles[b].kind == Obstacle::Kind::plane || t.s <= 0.0 || t.s >= 1.0) continue;
@@ -200,14 +201,22 @@ void RodObstacles::add_stiffness(const Points& x, double radius, const ContactMa
 }
 
 void RodObstacles::forget_expected() noexcept {
-  for (ObstacleTouch& t : touches_) t.expected = false;
+  for (ObstacleTouch& t : touches_) {
+    t.expected = false;
+    t.model = t.friction;
+  }
 }
 
-bool RodObstacles::expect(const Eigen::Matrix4Xd& move, double radius) noexcept {
+bool RodObstacles::expect(const Eigen::Matrix4Xd& move, double radius, const ContactMaterial& m) noexcept {
   bool changed = false;
   for (ObstacleTouch& t : touches_) {
-    if (t.force > 0.0) continue;
     const Vec3 step = (1.0 - t.s) * move.col(t.edge).head<3>() + t.s * move.col(t.edge + 1).head<3>();
+    if (t.force > 0.0) {
+      const double mu = obstacles[static_cast<std::size_t>(t.obstacle)].friction;
+      const Vec3 slip = t.trial + step - step.dot(t.normal) * t.normal;
+      changed = expect_friction(slip, t.trial, t.normal, t.load, mu, m.stick(mu, t.load), t.model) || changed;
+      continue;
+    }
     const bool touches = t.gap + t.normal.dot(step) < (t.expected ? 0.0 : -1e-4 * radius);
     changed = changed || touches != t.expected;
     t.expected = touches;
@@ -218,11 +227,17 @@ bool RodObstacles::expect(const Eigen::Matrix4Xd& move, double radius) noexcept 
 void RodObstacles::add_expected(const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
                                 BlockCholesky& matrix) const noexcept {
   for (const ObstacleTouch& t : touches_) {
+    if (t.force > 0.0) {
+      const Vec3 turn = t.model.force - t.friction.force;
+      rhs.col(t.edge).head<3>() += (1.0 - t.s) * turn;
+      rhs.col(t.edge + 1).head<3>() += t.s * turn;
+    }
     if (!t.expected) continue;
-    const Vec3 pull = -m.wall_ratio * m.stiffness * t.gap * t.normal;
+    const double k = expected_stiffness(m.wall_ratio * m.stiffness);
+    const Vec3 pull = -k * t.gap * t.normal;
     rhs.col(t.edge).head<3>() += (1.0 - t.s) * pull;
     rhs.col(t.edge + 1).head<3>() += t.s * pull;
-    add_block(t, m.wall_ratio * m.stiffness * t.normal * t.normal.transpose(), chain, matrix);
+    add_block(t, k * t.normal * t.normal.transpose(), chain, matrix);
   }
 }
 

@@ -37,7 +37,9 @@ struct ObstacleTouch {
   double load = 0;                    // [N], normal force by which friction goes in this iteration
   bool expected = false;              // see RodContact::expect
   Vec3 xi_start = Vec3::Zero();       // [m], turned with the body
+  Vec3 trial = Vec3::Zero();          // [m], bristle before return mapping
   FrictionPoint friction;
+  FrictionPoint model;                // tangent of friction that the Newton step goes by, see RodContact::expect
 };
 
 class RodObstacles {
@@ -61,7 +63,7 @@ class RodObstacles {
                     Eigen::Matrix4Xd& gradient) noexcept;
   void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
                      BlockCholesky& matrix) const noexcept;
-  bool expect(const Eigen::Matrix4Xd& move, double radius) noexcept;
+  bool expect(const Eigen::Matrix4Xd& move, double radius, const ContactMaterial& m) noexcept;
   void forget_expected() noexcept;
   void add_expected(const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs, BlockCholesky& matrix) const noexcept;
   double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;

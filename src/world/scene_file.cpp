@@ -104,7 +104,7 @@ RodMaterial load_suture(const std::string& path, ContactMaterial& contact) {
   m.internal_friction = measured(file, "internal_friction", "ms", Range::not_negative());
   contact.stiffness = measured(file, "squeeze_stiffness", "N/m", Range::positive());
   contact.friction = m.friction;
-  contact.presliding = 0.05 * m.radius;
+  contact.presliding = 0.2 * m.radius;
   file.finish();
   return m;
 }
@@ -181,7 +181,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   d.has_field = scene.has("field");
   if (d.has_field) d.field_W = scene.vec3("field", "mm");
   m->step.max_iterations = scene.integer("newton_iterations", 1, 100);
-  m->step.longest_move = 0.5 * m->resolution.longest;
+  m->step.longest_move = 16.0 * m->thread.radius;
   scene.finish();
   return m;
 }
