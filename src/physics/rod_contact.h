@@ -2,10 +2,11 @@
 // Contact of the thread with itself: stiff repulsion of edges closer than one diameter, Coulomb friction, and a bound on each
 // move so that no strand ever passes through another.
 //
-// Normal force: with D the distance of two edges' axes and o = 2h - D the overlap,
-//   phi(D) = k o^2/2  (o > 0)   plus below D = h the logarithmic barrier  -k (D - h)^2 ln(D/h)
-// (Li et al., "Incremental Potential Contact", ACM TOG 39(4):49, 2020, eq. 6). k stands for the transverse squeeze of a
-// round polymer thread (Hertz, crossed cylinders: 0.1 N flattens a 25 um nylon by about 6 um, k about 2e4 N/m).
+// Normal force: Hertz's law of two round bodies (Johnson, Contact Mechanics, 1985, eq. 4.23): with D the distance of two edges' axes and
+// o = 2h - D > 0 the overlap,
+//   F = k o sqrt(o / 0.6 h),  phi(D) = 2/5 F o   plus below D = h the logarithmic barrier  -k (D - h)^2 ln(D/h)
+// (Li et al., "Incremental Potential Contact", ACM TOG 39(4):49, 2020, eq. 6). k is the secant stiffness at o = 0.6 h, where 0.12 N
+// press a 10-0 nylon (crossed cylinders: k about 1.6e4 N/m). Light contacts are softer, as they are: 1 mN gives 0.3 um.
 // Friction: friction.h, with the relative displacement of the axes' closest material points.
 // No passage: a move of all nodes is allowed only up to the fraction that conservative advancement (Mirtich 1996) proves
 // free of crossing: relative displacement of two edges, largest over their end points, bounds how far D can fall.
@@ -24,8 +25,8 @@
 namespace filum {
 
 struct ContactMaterial {
-  double stiffness = 1e4;             // [N/m], normal, each pair of edges
-  double wall_ratio = 0.1;            // [-], stiffness against bars and sheet, each edge, of that between strands
+  double stiffness = 1e4;             // [N/m], normal, secant at an overlap of 0.6 radii, each pair of edges
+  double wall_ratio = 0.15;           // [-], stiffness against bars and sheet, each edge, of that between strands
   double tangential_ratio = 0.7;      // [-], k_t / k (Mindlin: 2(1-nu)/(2-nu), about 0.75 at nu 0.4)
   double friction = 0.2;              // [-]
   double presliding = 0.6e-6;         // [m], give of a contact before it slips, at light load (friction.h)

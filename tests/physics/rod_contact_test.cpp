@@ -41,6 +41,18 @@ TEST(RodContact, PairPotentialDerivativesAgreeWithDifferences) {
   EXPECT_GT(pair_potential(1e-300, kRadius, k).energy, 1.9 * pair_potential(1e-150, kRadius, k).energy);  // without bound
 }
 
+TEST(RodContact, SqueezeIsHertzOfCrossedCylinders) {
+  const double E = 2.5e9, nu = 0.4, h = 12.5e-6;
+  const double hertz = 4.0 / 3.0 * E / (2.0 * (1.0 - nu * nu)) * std::sqrt(h);  // F = hertz o^(3/2), equal crossed cylinders
+  const double k = hertz * std::sqrt(0.6 * h);
+  for (double o : {0.1e-6, 1e-6, 6e-6}) {
+    const PairPotential p = squeeze(o, h, k);
+    EXPECT_NEAR(-p.slope, hertz * std::pow(o, 1.5), 1e-12 * hertz * std::pow(o, 1.5)) << o;
+    EXPECT_NEAR(p.energy, 0.4 * hertz * std::pow(o, 2.5), 1e-12 * hertz * std::pow(o, 2.5)) << o;
+  }
+  EXPECT_EQ(squeeze(-1e-6, h, k).slope, 0.0);
+}
+
 /// Signed volume of the tetrahedron a0 a1 b0 b1: two segments can pass through each other only while it is zero.
 double side(const Vec3 p[4]) { return (p[1] - p[0]).cross(p[3] - p[2]).dot(p[2] - p[0]); }
 
