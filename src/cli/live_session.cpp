@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <chrono>
 
-#include "cli/security.h"
 #include "training/result_json.h"
 
 namespace filum {
@@ -53,7 +52,7 @@ LiveSession::LiveSession(Setup setup, InputDevices inputs, LiveOptions options)
       pointer_(inputs.pointer),
       device_names_(names_of(inputs.devices)),
       world_(setup_.model),
-      hands_(std::move(inputs.devices), haptic_options(inputs.scale)),
+      hands_(std::make_unique<HapticLoop>(std::move(inputs.devices), haptic_options(inputs.scale))),
       task_(setup_.task, world_.description()),
       pacing_(world_.description().dt),
       observations_(kQueue, world_.observation()),
@@ -68,7 +67,7 @@ LiveSession::~LiveSession() {
 
 void LiveSession::start() {
   epoch_us_ = steady_now_us();
-  if (!scripted_) hands_.start(epoch_us_);
+  if (!scripted_) hands_->start(epoch_us_);
   scoring_thread_ = std::thread([this] {
     try {
       run_scoring();
@@ -86,7 +85,7 @@ void LiveSession::start() {
 void LiveSession::run_world() noexcept {
   while (!stop_.load(std::memory_order_relaxed) && !at_the_end()) step_once();
   end_us_ = steady_now_us();
-  hands_.stop();
+  hands_->stop();
   world_over_.store(true);
 }
 
@@ -99,12 +98,12 @@ bool LiveSession::at_the_end() const noexcept {
 }
 
 Inputs LiveSession::next_inputs(std::int64_t scene_us) noexcept {
-  if (!scripted_) return hands_.inputs().read();
-  for (; next_tick_us_ <= scene_us; next_tick_us_ += kTick) hands_.tick(next_tick_us_);
+  if (!scripted_) return hands_->inputs().read();
+  for (; next_tick_us_ <= scene_us; next_tick_us_ += kTick) hands_->tick(next_tick_us_);
   bool over = script_end_step_ == 0;
-  for (std::size_t i = 0; i < hands_.n_devices(); ++i) over = over && hands_.device(i).health().state == DeviceState::finished;
+  for (std::size_t i = 0; i < hands_->n_devices(); ++i) over = over && hands_->device(i).health().state == DeviceState::finished;
   if (over) script_end_step_ = world_.observation().step + kStepsAfterScript;
-  return hands_.inputs().read();
+  return hands_->inputs().read();
 }
 
 void LiveSession::step_once() {
@@ -116,8 +115,8 @@ void LiveSession::step_once() {
   world_.step(inputs);
   const std::int64_t end_us = steady_now_us();
   const bool late = pacing_.ended(begin_us, end_us);
-  hands_.tool_states().write_slot() = tool_states_of(world_.observation(), scripted_ ? next_tick_us_ : end_us - epoch_us_);
-  hands_.tool_states().publish();
+  hands_->tool_states().write_slot() = tool_states_of(world_.observation(), scripted_ ? next_tick_us_ : end_us - epoch_us_);
+  hands_->tool_states().publish();
   record_step(inputs, begin_us, end_us);
   hand_over(late && options_.paced, end_us - begin_us);
 }
@@ -174,7 +173,7 @@ void LiveSession::store_events() {
 
 void LiveSession::store_samples() {
   DeviceSample sample;
-  while (hands_.samples().pop(sample)) {
+  while (hands_->samples().pop(sample)) {
     if (options_.recorder != nullptr) options_.recorder->record_sample(sample_record(sample));
   }
 }
@@ -184,29 +183,40 @@ void LiveSession::show(const Observation& observation) {
   if (!options_.show || now < next_show_us_) return;
   next_show_us_ = now + kShowEvery;
   const TaskStatus status = task_.status();
-  options_.show({observation, status, hands_.report().read(), device_names_});
+  options_.show({observation, status, hands_->report().read(), device_names_});
 }
 
 // ---- the caller's thread
 
-LiveOutcome LiveSession::wait() {
+LiveOutcome LiveSession::end() {
   world_thread_.join();
   scoring_thread_.join();
   if (failure_) std::rethrow_exception(failure_);
-  LiveOutcome outcome;
-  outcome.result = finish_with_security(task_, world_);
+  pointer_ = nullptr;
+  hands_.reset();
+  outcome_.result = task_.finish();
   const Observation& o = world_.observation();
-  outcome.steps = o.step;
-  outcome.scene_seconds = o.time;
-  outcome.wall_seconds = 1e-6 * static_cast<double>(end_us_ - epoch_us_);
-  outcome.real_time_factor = outcome.wall_seconds > 0.0 ? o.time / outcome.wall_seconds : 0.0;
-  outcome.overruns = pacing_.overruns();
-  outcome.state_hash = o.state_hash;
+  outcome_.steps = o.step;
+  outcome_.scene_seconds = o.time;
+  outcome_.wall_seconds = 1e-6 * static_cast<double>(end_us_ - epoch_us_);
+  outcome_.real_time_factor = outcome_.wall_seconds > 0.0 ? o.time / outcome_.wall_seconds : 0.0;
+  outcome_.overruns = pacing_.overruns();
+  outcome_.state_hash = o.state_hash;
+  return outcome_;
+}
+
+Result LiveSession::settle(const std::function<bool(double)>& go_on) {
+  const Result r = finish_with_security(task_, world_, go_on);
   if (options_.recorder != nullptr) {
-    const Result& r = outcome.result;
     options_.recorder->set_score({r.passed, r.total, r.seconds, result_json(r)});
     options_.recorder->close();
   }
+  return r;
+}
+
+LiveOutcome LiveSession::wait() {
+  LiveOutcome outcome = end();
+  outcome.result = settle();
   return outcome;
 }
 

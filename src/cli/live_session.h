@@ -17,6 +17,7 @@
 #include "base/exchange.h"
 #include "cli/inputs.h"
 #include "cli/pacing.h"
+#include "cli/security.h"
 #include "cli/setup.h"
 #include "haptics/haptic_loop.h"
 #include "session/recorder.h"
@@ -60,7 +61,12 @@ class LiveSession {
   void request_stop() noexcept { stop_.store(true); }
   /// True once all steps are done and scored.
   bool over() const noexcept { return over_.load(); }
-  /// Waits for the end, stores the score and closes the recording.
+  /// Waits for the end and lets the devices go. The result is without the pull test of its knot, which takes some seconds.
+  LiveOutcome end();
+  bool knot_to_pull() const { return has_knot_to_pull(task_, world_, outcome_.result); }
+  /// After end(): pulls the knot, if there is one (see finish_with_security), stores the score and closes the recording.
+  Result settle(const std::function<bool(double)>& go_on = {});
+  /// Both.
   LiveOutcome wait();
 
   const SceneDescription& scene() const { return world_.description(); }
@@ -86,7 +92,7 @@ class LiveSession {
   PointerDevice* pointer_;
   std::vector<std::string> device_names_;
   World world_;
-  HapticLoop hands_;
+  std::unique_ptr<HapticLoop> hands_;        // until the end
   TaskSession task_;
   Pacing pacing_;
   Queue<Observation> observations_;
@@ -101,6 +107,7 @@ class LiveSession {
   std::atomic<bool> stop_{false}, world_over_{false}, over_{false};
   std::atomic<std::uint64_t> end_step_{0};   // 0: not known yet
   std::exception_ptr failure_;               // of the scoring thread
+  LiveOutcome outcome_;                      // once ended
   std::thread world_thread_, scoring_thread_;
 };
 

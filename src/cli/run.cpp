@@ -34,9 +34,8 @@ void print_text(const LiveOutcome& outcome) {
   std::printf("%s: %s, %s\n", r.title.c_str(), r.finished ? "finished" : "not finished", r.passed ? "passed" : "not passed");
   if (r.pressure) {
     std::printf("pressure: peak %.1f mmHg, dose %.1f mmHg min (%s)\n", r.pressure->peak / kMmHg, r.pressure->dose / (60.0 * kMmHg), r.pressure->limits.label.c_str());
-  } else {
-    std::printf("knot: %s\n", r.knot.knot_class.c_str());
   }
+  if (r.has_knot) std::printf("knot: %s\n", r.knot.knot_class.c_str());
   std::printf("score %.1f of %.1f\n", r.total, r.max_total);
   for (const ScoreItem& item : r.items) {
     std::printf("  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());

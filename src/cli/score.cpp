@@ -29,8 +29,8 @@ int run(const ScoreOptions& o) {
   if (!rescored.replay.identical) {
     std::fprintf(stderr, "filum: this build steps the recording differently; the score is of what it computes\n");
   }
-  std::printf("%s: %s, knot %s, %.1f of %.1f points\n", r.title.c_str(), r.passed ? "passed" : "not passed",
-              r.knot.knot_class.c_str(), r.total, r.max_total);
+  const std::string knot = r.has_knot ? ", knot " + r.knot.knot_class : "";
+  std::printf("%s: %s%s, %.1f of %.1f points\n", r.title.c_str(), r.passed ? "passed" : "not passed", knot.c_str(), r.total, r.max_total);
   for (const ScoreItem& item : r.items) {
     std::printf("  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());
   }

@@ -112,6 +112,8 @@ Trainer::Trainer(TrainerOptions options)
 
 Trainer::~Trainer() {
   stop_all();
+  if (pull_) pull_->abandon();
+  finish_pull();
   server_->stop();
 }
 
@@ -196,6 +198,7 @@ void Trainer::run(const std::atomic<bool>& quit) {
 void Trainer::look_after() {
   if (session_ && session_->over()) end_session();
   if (session_) warn_of_recording();
+  if (pull_) watch_pull();
 }
 
 void Trainer::warn_of_recording() {
@@ -289,26 +292,66 @@ void Trainer::start_session(const StartMessage& start, Setup setup, InputDevices
   publish_state("running");
 }
 
+/// Shows the result at once; what the pull test of its knot says comes later, while the trainee may go on.
 void Trainer::end_session() {
   set_pointer(nullptr);
-  const LiveOutcome outcome = session_->wait();
-  session_.reset();
+  finish_pull();
   lab_.port_in_use(false);
-  const Result& r = outcome.result;
-  if (recorder_) {
-    const RecorderStatus status = recorder_->status();
+  view_.recording = false;
+  Result result;
+  try {
+    result = session_->end().result;
+  } catch (const std::exception& error) {
+    session_.reset();
+    recorder_.reset();
+    server_->publish_error({"failed", std::string("Scoring failed: ") + error.what(), "The recording holds what happened."});
+    return publish_state("ended");
+  }
+  const bool to_pull = session_->knot_to_pull();
+  view_.knot_test = to_pull ? 0.0 : -1.0;
+  pull_ = std::make_unique<KnotPull>(std::move(session_), std::move(recorder_), view_.session);
+  if (to_pull) {
+    server_->publish_result(result_message(result, view_.session));
+  } else {
+    finish_pull();
+  }
+  publish_state("ended");
+}
+
+/// Tells how far the pull test is, and its end.
+void Trainer::watch_pull() {
+  if (pull_->over()) {
+    finish_pull();
+    publish_state(view_.state);
+  } else if (pull_->progress() > view_.knot_test + 0.02) {
+    view_.knot_test = pull_->progress();
+    publish_state(view_.state);
+  }
+}
+
+/// Waits for the pull test and enters the score. Its result is shown unless another session has begun since.
+void Trainer::finish_pull() {
+  if (!pull_) return;
+  const std::unique_ptr<KnotPull> pull = std::move(pull_);
+  view_.knot_test = -1.0;
+  Result r;
+  try {
+    r = pull->finish();
+  } catch (const std::exception& error) {
+    server_->publish_error({"failed", std::string("The pull test failed: ") + error.what(), "filum score does it again."});
+    return;
+  }
+  if (const Recorder* recorder = pull->recorder()) {
+    const RecorderStatus status = recorder->status();
     if (!status.healthy) view_.warning = "The recording is incomplete: " + status.message;
     try {
       const std::lock_guard lock(store_mutex_);
-      store_->finish(view_.session, ScoreRecord{r.passed, r.total, r.seconds, ""});
+      store_->finish(pull->id(), ScoreRecord{r.passed, r.total, r.seconds, ""});
     } catch (const std::exception& error) {
       view_.warning = std::string("The session is stored, but not entered in the index: ") + error.what();
     }
   }
-  recorder_.reset();
-  view_.recording = false;
-  server_->publish_result(result_message(r, view_.session));
-  publish_state("ended");
+  if (!session_ && !replay_ && view_.session == pull->id()) server_->publish_result(result_message(r, pull->id()));
 }
 
 void Trainer::open_replay(const std::string& session) {

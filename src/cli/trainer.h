@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/knot_pull.h"
 #include "cli/live_session.h"
 #include "cli/replay_session.h"
 #include "cli/trainer_lab.h"
@@ -56,12 +57,15 @@ class Trainer final : public ServerHost {
  private:
   void open_store();
   std::optional<std::string> recording_of(const std::string& session);
+  const std::string& input_of(const std::string& session);
   void carry_out(const ClientMessage& message);
   void look_after();
   void start_task(const StartMessage& start);
   void start_session(const StartMessage& start, Setup setup, InputDevices inputs);
   void begin_recording(const StartMessage& start, const Setup& setup, const std::string& input);
   void end_session();
+  void watch_pull();
+  void finish_pull();
   void open_replay(const std::string& session);
   void stop_all();
   void push(const PointerMessage& message);
@@ -73,6 +77,7 @@ class Trainer final : public ServerHost {
   std::mutex store_mutex_;              // the store is used by the server's thread and by run()'s
   std::optional<Store> store_;
   std::string store_warning_;
+  std::map<std::string, std::string> inputs_;  // by session, as its recording says; guarded by store_mutex_
   std::map<std::string, std::string> titles_;  // by task; constant
   TrainerLab lab_;
   std::unique_ptr<Server> server_;
@@ -81,6 +86,7 @@ class Trainer final : public ServerHost {
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<ReplaySession> replay_;
+  std::unique_ptr<KnotPull> pull_;      // of the last session that ended
 
   std::mutex pointer_mutex_;
   PointerDevice* pointer_ = nullptr;    // guarded by pointer_mutex_, as the two below

@@ -12,22 +12,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Where the poses came from, in one word, from what the recording says of it; empty if it cannot be read.
-std::string input_of(const std::string& file) {
-  try {
-    const std::string input = RecordingReader(file).meta().input;
-    if (input.starts_with("demonstrat")) return "demo";
-    return input == "pointer" ? "pointer" : "device";
-  } catch (const InputError&) {
-    return "";  // damaged: the store's check says so
-  }
-}
-
-Json info_json(const StoreEntry& e, const std::string& title, const std::string& file) {
+Json info_json(const StoreEntry& e, const std::string& title, const std::string& input) {
   return {{"id", e.id},
           {"task", e.task},
           {"title", title},
-          {"input", input_of(file)},
+          {"input", input},
           {"code", e.participant},
           {"started", e.started_utc},
           {"seconds", e.seconds},
@@ -39,6 +28,19 @@ Json info_json(const StoreEntry& e, const std::string& title, const std::string&
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 }  // namespace
+
+/// Where the poses came from, in one word, from what the recording says of it; empty if it cannot be read. A recording is opened for it once.
+const std::string& Trainer::input_of(const std::string& session) {
+  const auto known = inputs_.find(session);
+  if (known != inputs_.end()) return known->second;
+  static const std::string unknown;
+  try {
+    const std::string input = RecordingReader(store_->file_of(session)).meta().input;
+    return inputs_[session] = input.starts_with("demonstrat") ? "demo" : input == "pointer" ? "pointer" : "device";
+  } catch (const InputError&) {
+    return unknown;  // damaged: the store's check says so
+  }
+}
 
 std::optional<std::string> Trainer::api(std::string_view path) {
   constexpr std::string_view kSessions = "/api/sessions";
@@ -52,7 +54,7 @@ std::optional<std::string> Trainer::api(std::string_view path) {
   if (path.empty()) {
     Json list = Json::array();
     if (store_) {
-      for (const StoreEntry& entry : store_->list()) list.push_back(info_json(entry, title_of(entry.task), store_->file_of(entry.id)));
+      for (const StoreEntry& entry : store_->list()) list.push_back(info_json(entry, title_of(entry.task), input_of(entry.id)));
     }
     return text_of({{"sessions", list}});
   }
@@ -69,7 +71,7 @@ std::optional<std::string> Trainer::api(std::string_view path) {
   } catch (const InputError&) {
     // A session that is running or damaged has no result to show; the store's check names the damage.
   }
-  if (!series) return text_of({{"session", info_json(*entry, title_of(entry->task), store_->file_of(entry->id))}, {"result", result}});
+  if (!series) return text_of({{"session", info_json(*entry, title_of(entry->task), input_of(entry->id))}, {"result", result}});
   if (result.is_null()) return text_of({{"series", Json::array()}, {"paths", Json::array()}});
   return text_of({{"series", result["series"]}, {"paths", result["paths"]}});
 }

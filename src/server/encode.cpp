@@ -193,7 +193,8 @@ std::string session_state_message(const TrainerView& trainer, int controller, bo
                   {"clients", clients},
                   {"recording", trainer.recording},
                   {"session", optional_text(trainer.session)},
-                  {"warning", trainer.warning}});
+                  {"warning", trainer.warning},
+                  {"knot_test", trainer.knot_test < 0.0 ? json(nullptr) : json(trainer.knot_test)}});
 }
 
 std::string replay_state_message(const ReplayView& replay) {

@@ -68,6 +68,7 @@ struct TrainerView {
   bool recording = false;
   std::string session;         // identifier, empty: not recorded
   std::string warning;         // for people, empty: all well
+  double knot_test = -1.0;     // share of the pull test of the last knot that is done; below 0: none runs
 };
 
 struct ReplayView {

@@ -80,6 +80,7 @@ struct Result {
   std::string task, title;
   bool finished = false;  // all steps done
   bool passed = false;
+  bool has_knot = false;  // the task is one of tying a knot: `knot` means something
   double seconds = 0.0;  // [s], scored time
   double total = 0.0;    // points
   double max_total = 0.0;

@@ -1,5 +1,6 @@
 #include "training/result_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -149,6 +150,28 @@ Json events_json(const std::vector<TaskEvent>& events) {
   return list;
 }
 
+/// Samples that are not numbers are left out: the schema of curves and paths knows no null.
+Json curve_json(const Curve& c) {
+  std::vector<double> time, value;
+  for (std::size_t i = 0; i < std::min(c.time.size(), c.value.size()); ++i) {
+    if (!std::isfinite(c.time[i]) || !std::isfinite(c.value[i])) continue;
+    time.push_back(c.time[i]);
+    value.push_back(c.value[i]);
+  }
+  return {{"name", c.name}, {"title", c.title}, {"unit", c.unit}, {"time", time}, {"value", value}};
+}
+
+Json path_json(const ToolPath& p) {
+  std::vector<double> time, positions;
+  for (std::size_t i = 0; i < std::min(p.time.size(), p.positions.size() / 3); ++i) {
+    const double* at = p.positions.data() + 3 * i;
+    if (!std::isfinite(p.time[i] + at[0] + at[1] + at[2])) continue;
+    time.push_back(p.time[i]);
+    positions.insert(positions.end(), at, at + 3);
+  }
+  return {{"tool", p.tool}, {"name", p.name}, {"positions", positions}, {"time", time}};
+}
+
 }  // namespace
 
 std::string result_json(const Result& r, bool full) {
@@ -158,27 +181,18 @@ std::string result_json(const Result& r, bool full) {
                {"passed", r.passed},
                {"seconds", finite(r.seconds)},
                {"score", score_json(r)},
-               {"knot", knot_json(r)},
+               {"knot", r.has_knot ? knot_json(r) : Json(nullptr)},
                {"events", events_json(r.events)}};
   if (r.pressure) json["pressure"] = pressure_json(*r.pressure);
   if (r.needle) add_needle(*r.needle, json);
   json["series"] = Json::array();
-  for (const Curve& c : r.series) {
-    json["series"].push_back({{"name", c.name},
-                              {"title", c.title},
-                              {"unit", c.unit},
-                              {"time", finite(c.time)},
-                              {"value", finite(c.value)}});
-  }
+  for (const Curve& c : r.series) json["series"].push_back(curve_json(c));
   json["paths"] = Json::array();
-  for (const ToolPath& p : r.paths) {
-    json["paths"].push_back(
-        {{"tool", p.tool}, {"name", p.name}, {"positions", finite(p.positions)}, {"time", finite(p.time)}});
-  }
+  for (const ToolPath& p : r.paths) json["paths"].push_back(path_json(p));
   if (full) {
     json["verdict"] = r.verdict;
     json["measures"] = measures_json(r.measures);
-    json["knot_report"] = report_json(r.knot);
+    if (r.has_knot) json["knot_report"] = report_json(r.knot);
     if (r.security) {
       json["security"] = {{"held", r.security->held},
                           {"slip_force_newton", finite(r.security->slip_force)},

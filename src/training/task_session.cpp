@@ -171,6 +171,7 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
   r.task = task_.name;
   r.title = task_.title;
   r.finished = done();
+  r.has_knot = task_.has_knot();
   r.seconds = elapsed_;
   r.security = security;
   r.events = events_;

@@ -108,6 +108,7 @@ PullTestReport pull_test(const Model& model, const State& state, const PullTestO
   PullTestReport report;
   report.most_pull = o.most_pull;
   double taut_at = -1.0;  // [m], travel at which the loop became taut
+  double done = 0.0;       // of the way to any of the ends of the test
   double strong_at = 0.0;  // [m], travel at which the pull was last near its largest
   while (rig.travel < o.most_travel && !rig.parted) {
     rig.step(taut_at < 0.0 ? o.fast : o.slow);
@@ -116,6 +117,9 @@ PullTestReport pull_test(const Model& model, const State& state, const PullTestO
     if (taut_at < 0.0 && rig.pull >= o.taut_pull) taut_at = rig.travel;
     report.opening = taut_at < 0.0 ? 0.0 : 2.0 * (rig.travel - taut_at);
     report.held = rig.pull >= o.most_pull;
+    done = std::max({done, rig.pull / o.most_pull, report.opening / o.allowed, rig.travel / o.most_travel});
+    if (o.go_on && !o.go_on(std::min(done, 1.0))) report.abandoned = true;
+    if (report.abandoned) break;
     if (report.held || report.opening >= o.allowed) break;
     if (rig.pull > kGivenWay * report.force) strong_at = rig.travel;
     if (taut_at >= 0.0 && 2.0 * (rig.travel - strong_at) > kGivenWay * o.allowed) break;

@@ -9,6 +9,8 @@
 // Valid: quasi-static (inertia at 1 mm/s is negligible). Neglects: plastic set of the thread, gravity (0.1 uN on the whole thread).
 // Test: pull_test_test (square knot holds, single throw and unknotted thread slip).
 
+#include <functional>
+
 #include "world/model.h"
 #include "world/state.h"
 
@@ -21,6 +23,7 @@ struct PullTestOptions {
   double slow = 1.0e-3;       // [m/s], of each bar under load
   double fast = 4e-3;         // [m/s], of each bar while the loop is slack
   double most_travel = 8e-3;  // [m], of each bar
+  std::function<bool(double)> go_on;  // told after every step how much is done, 0 to 1; false abandons the test
 };
 
 struct PullTestReport {
@@ -29,6 +32,7 @@ struct PullTestReport {
   double force = 0.0;       // [N], at which it slipped or broke; most_pull if it held
   double most_pull = 0.0;   // [N], as asked for
   double opening = 0.0;     // [m], of the loop since it was taut, at the end
+  bool abandoned = false;   // not pulled to the end: the figures say nothing
   int steps = 0;
   double residual = 0.0;    // [N], largest unbalanced force left by the solver in a step
 };

@@ -76,7 +76,7 @@ export function startMock({ port = 0, duration = 8 } = {}) {
 function sessionState(state) {
   const running = state.running ? "running" : state.replay ? "replay" : "idle";
   return { type: "session_state", state: running, task: state.running ? "knot-square" : "", input: state.running ? state.input : null, controller: 1, in_control: true, clients: state.sockets.size,
-    recording: state.running, session: state.running ? "s1" : null, warning: "" };
+    recording: state.running, session: state.running ? "s1" : null, warning: "", knot_test: null };
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {

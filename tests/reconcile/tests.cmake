@@ -1,6 +1,8 @@
 foreach(name hereditary dataset needle rigs workflow)
   filum_test(reconcile/${name})
 endforeach()
+filum_fuzz(reconcile/csv_table)
+filum_fuzz(reconcile/dataset)
 if(TARGET filum)
   add_test(NAME reconcile.model_in_scene COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/model_in_scene_test.sh $<TARGET_FILE:filum> ${PROJECT_SOURCE_DIR})
   set_tests_properties(reconcile.model_in_scene PROPERTIES TIMEOUT 300)

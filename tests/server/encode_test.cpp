@@ -28,7 +28,7 @@ Observation observation_of(int nodes, int capacity) {
 }
 
 TEST(Encode, FrameHoldsTheNodesInUse) {
-  const TaskView task{"Lay the throw", 2, {"a", "b", "c"}, "pull", 12.5, false, {{"warn", "too tight \"now\"", "thread-overload"}}};
+  const TaskView task{"Lay the throw", 2, {"a", "b", "c"}, "pull", 12.5, false, {{"warn", "too tight \"now\"", "thread-overload"}}, {}, 0.0, {}};
   const std::string text = frame_message(9, frame_body(observation_of(4, 10), &task, {{"pointer", "live", 5, 0, 0, 1}}));
   const json frame = json::parse(text);
   EXPECT_EQ(SchemaCheck().fault(frame, "ServerMessage"), "");
@@ -97,7 +97,8 @@ TEST(Encode, EveryOtherMessageFollowsTheSchema) {
   EXPECT_EQ(json::parse(scene_message(scene)).at("post").at("radius"), 0.5e-3);
   EXPECT_EQ(fault(event_message({1.5, "drop", 1, 0.25, "N", ""})), "");
   EXPECT_EQ(fault(session_state_message({}, 0, false, 1)), "");
-  EXPECT_EQ(fault(session_state_message({"running", "knot-square", "demo", true, "id", ""}, 1, true, 2)), "");
+  EXPECT_EQ(fault(session_state_message({"running", "knot-square", "demo", true, "id", "", -1.0}, 1, true, 2)), "");
+  EXPECT_EQ(fault(session_state_message({"ended", "knot-square", "demo", false, "id", "", 0.4}, 1, true, 2)), "");
   EXPECT_EQ(fault(replay_state_message({"id", 1.0, 2.0, true})), "");
   EXPECT_EQ(fault(error_message({"a", "b", "c"})), "");
   EXPECT_EQ(schema.fault(json::parse(task_list_json(hello.tasks)), "TaskList"), "");

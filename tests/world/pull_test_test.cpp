@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "physics/step_control.h"
@@ -88,6 +89,23 @@ PullTestOptions one_millinewton() {
   o.taut_pull = 0.2e-3;
   o.allowed = 1e-3;
   return o;
+}
+
+TEST(PullTest, TellsHowFarItIsAndCanBeAbandoned) {
+  const Scene scene = laid({1, -1});
+  std::vector<double> told;
+  PullTestOptions o;
+  o.go_on = [&](double done) {
+    told.push_back(done);
+    return told.size() < 20;
+  };
+  const PullTestReport r = pull_test(scene.model, scene.state, o);
+  EXPECT_TRUE(r.abandoned);
+  EXPECT_EQ(r.steps, 20);
+  ASSERT_EQ(told.size(), 20u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GT(told.back(), 0.0);
+  EXPECT_LE(told.back(), 1.0);
 }
 
 TEST(PullTest, TightSquareKnotHolds) {

@@ -30,6 +30,7 @@ export class App {
   replay: ReplayState | null = null;
   readonly sound = new Sound();
   readonly help = new Help();
+  private pulling = false;
   private hadControl = false;
   private view: FieldView | null = null;
   private page: Page | null = null;
@@ -125,6 +126,19 @@ export class App {
     this.recording.hidden = !message.recording;
     if (message.warning) this.notify("danger", "session", message.warning);
     else this.dropNotice("session");
+    this.pullChanged(message.knot_test);
+  }
+
+  /** Told once and then kept up to date, unless it was closed. */
+  private pullChanged(share: number | null): void {
+    if (share === null) this.dropNotice("pull");
+    else {
+      const text = `The knot is being pulled to see what it holds: ${Math.round(100 * share)} %. You can go on meanwhile.`;
+      const box = [...this.notice.children].find((child) => (child as HTMLElement).dataset.code === "pull");
+      if (box) box.querySelector("span")!.textContent = text;
+      else if (!this.pulling) this.notify("info", "pull", text);
+    }
+    this.pulling = share !== null;
   }
 
   private lineChanged(state: LineState): void {

@@ -78,9 +78,9 @@ export class ResultPage implements Page {
     const { knot } = result;
     if (!knot) return null;
     const title = kKnotTitles[knot.class] ?? words(knot.class);
-    const pull = knot.security_newton === null ? "Not pulled." : knot.held ? `Held: pulled up to ${milliNewton(knot.security_newton)} without slipping.` : `Slipped at ${milliNewton(knot.security_newton)}.`;
+    const pull = knot.security_newton === null ? (this.app.session?.knot_test != null && !this.id ? "Being pulled; what it holds follows." : "Not pulled.") : knot.held ? `Held: pulled up to ${milliNewton(knot.security_newton)} without slipping.` : `Slipped at ${milliNewton(knot.security_newton)}.`;
     return h("section", { class: "panel knot" }, h("h2", {}, "Knot"), knotPicture(knot.class, title, false), h("p", { class: "big" }, title),
-      h("p", { class: knot.held ? "" : "alarm" }, knot.held ? icon.pass() : icon.warn(), " ", pull));
+      h("p", { class: knot.held || knot.security_newton === null ? "" : "alarm" }, knot.held ? icon.pass() : knot.security_newton === null ? icon.info() : icon.warn(), " ", pull));
   }
 
   private eventCard(result: Result, id: string | null): HTMLElement {

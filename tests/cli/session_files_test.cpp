@@ -1,0 +1,69 @@
+#include "cli/session_files.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "short_session.h"
+#include "training/result_json.h"
+#include "world/model.h"
+
+namespace filum {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SessionFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "filum-files-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path folder_;
+};
+
+TEST_F(SessionFiles, ARecordingHoldsAllItWasMadeFromAndScoresTheSame) {
+  const std::string file = (folder_ / "one.filum-session").string();
+  LiveOutcome live;
+  {
+    const auto recorder = make_recorder(file, load_setup(FILUM_SOURCE_DIR, "tip-hold"), "demonstrator", "P01");
+    live = started_session(recorder.get())->wait();
+  }
+  const RecordingReader recording(file);
+  EXPECT_EQ(recording.meta().task, "tip-hold");
+  EXPECT_EQ(recording.meta().participant, "P01");
+  fs::path sources;
+  {
+    const RecordedSetup recorded(recording);
+    sources = recorded.setup().root;
+    EXPECT_NE(sources, fs::path(FILUM_SOURCE_DIR));
+    EXPECT_EQ(recorded.setup().model->description.n_tools, load_setup(FILUM_SOURCE_DIR, "tip-hold").model->description.n_tools);
+  }
+  EXPECT_FALSE(fs::exists(sources)) << "the copies go with the object";
+  const Rescored again = rescore(recording);
+  EXPECT_TRUE(again.replay.identical);
+  EXPECT_EQ(again.replay.steps, live.steps);
+  EXPECT_EQ(result_json(again.result), result_json(live.result));
+}
+
+TEST_F(SessionFiles, WhatATaskDoesNotMeasureIsNotTold) {
+  const LiveOutcome live = started_session(nullptr)->wait();
+  const auto document = result_document(live.result);
+  EXPECT_TRUE(document.at("knot").is_null());
+  EXPECT_FALSE(document.contains("series"));
+  EXPECT_FALSE(document.contains("paths"));
+  const auto message = nlohmann::json::parse(result_message(live.result, ""));
+  EXPECT_EQ(message.at("type"), "result");
+  EXPECT_TRUE(message.at("session").is_null());
+  EXPECT_TRUE(message.at("knot").is_null());
+}
+
+TEST_F(SessionFiles, StoredTextThatIsNoResultGivesNoMessage) {
+  for (const char* text : {"", "{", "[]", "null", "{\"task\": 1}"}) EXPECT_EQ(result_message(std::string(text), "s"), "") << text;
+}
+
+}  // namespace
+}  // namespace filum

@@ -1,0 +1,50 @@
+#include "cli/setup.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/error.h"
+#include "world/model.h"
+
+namespace filum {
+namespace {
+
+bool holds(const std::vector<std::string>& list, const std::string& one) { return std::find(list.begin(), list.end(), one) != list.end(); }
+
+TEST(Setup, ATaskIsItsSceneAndItsRules) {
+  const auto s = load_setup(FILUM_SOURCE_DIR, "knot-square");
+  EXPECT_EQ(s.task.name, "knot-square");
+  EXPECT_TRUE(s.task.has_knot());
+  EXPECT_TRUE(s.model->description.has_post);
+  EXPECT_TRUE(s.model_file.empty());
+}
+
+TEST(Setup, AnUnknownTaskIsAnsweredWithThoseThereAre) {
+  try {
+    load_setup(FILUM_SOURCE_DIR, "knot-sqare");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.value, "knot-sqare");
+    EXPECT_NE(error.expected.find("knot-square"), std::string::npos);
+  }
+}
+
+TEST(Setup, EveryTaskThatIsListedCanBeRead) {
+  std::vector<std::string> problems;
+  const auto tasks = load_tasks(FILUM_SOURCE_DIR, problems);
+  EXPECT_TRUE(problems.empty());
+  const auto names = task_names(FILUM_SOURCE_DIR);
+  EXPECT_EQ(tasks.size(), names.size());
+  EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
+  EXPECT_TRUE(holds(names, "tip-hold"));
+}
+
+TEST(Setup, ModelsAreNamedByFolderAndFile) {
+  EXPECT_TRUE(holds(model_names(FILUM_SOURCE_DIR), "suture/10-0-nylon"));
+  EXPECT_TRUE(std::filesystem::exists(demonstration_file(FILUM_SOURCE_DIR, "knot-square")));
+}
+
+}  // namespace
+}  // namespace filum
