@@ -191,6 +191,10 @@ void NeedleBody::evaluate(const NeedleState& s, const NeedleOptions& o, Trial& t
   add_sheet(s, o, t);
   add_jaws(o, t);
   add_tethers(o, t);
+  if (dead_load_.isZero(0.0)) return;
+  const Vec3 r = t.X.q * shape_.point(dead_arc_);
+  t.energy -= dead_load_.dot(t.X.p + r);
+  add_point(r, dead_load_, Mat3::Zero(), t.gradient, t.stiffness);
 }
 
 /// Friction on the sheet goes by the normal forces of the present pose.
@@ -274,14 +278,17 @@ NeedleSummary NeedleBody::step(NeedleState& s, const NeedleOptions& o) noexcept 
   return summary;
 }
 
-Mat3 NeedleBody::look_ahead(const NeedleState& s, const NeedleOptions& o, double arc, Vec3& point) noexcept {
+Mat3 NeedleBody::look_ahead(const NeedleState& s, const NeedleOptions& o, double arc, Vec3& point, const Vec3& load) noexcept {
+  dead_load_ = load;
+  dead_arc_ = arc;
   minimise(s, o);
+  dead_load_.setZero();
   const Vec3 r = now_.X.q * shape_.point(arc);
-  point = now_.X.p + r;
   Eigen::Matrix<double, 6, 3> jt;  // J^T
   jt.topRows<3>() = Mat3::Identity();
   jt.bottomRows<3>() = cross_matrix(r);
   const Mat3 give = jt.transpose() * now_.stiffness.ldlt().solve(jt);
+  point = now_.X.p + r - give * load;
   return give.inverse();
 }
 

@@ -42,6 +42,7 @@ struct NeedleGrip {
 struct NeedleState {
   Pose X_WN;
   Vec3 v = Vec3::Zero(), w = Vec3::Zero();  // [m/s], [rad/s], frame W
+  Vec3 pull = Vec3::Zero();                 // [N], of the thread on the swage in the last step
   std::array<NeedleGrip, kNeedleTools> grips;
   Eigen::Matrix<double, 3, kNeedleSamples> sheet_bristle = Eigen::Matrix<double, 3, kNeedleSamples>::Zero();  // [m]
 };
@@ -83,8 +84,9 @@ class NeedleBody {
 
   /// Moves the pose to the end of the step; forces of tethers and tools are those there.
   NeedleSummary step(NeedleState& s, const NeedleOptions& o) noexcept;
-  /// The same without accepting it: pose, and stiffness by which the point at `arc` is held there.
-  Mat3 look_ahead(const NeedleState& s, const NeedleOptions& o, double arc, Vec3& point) noexcept;
+  /// The same without accepting it: the point at `arc` is held as by a spring of the stiffness returned whose rest is at `point`. It is that
+  /// of the body turned to where `load` [N] there brings it: with the pull of the last step, what is left to linearise is small.
+  Mat3 look_ahead(const NeedleState& s, const NeedleOptions& o, double arc, Vec3& point, const Vec3& load = Vec3::Zero()) noexcept;
 
   /// Takes hold of what lies between the pads within `reach` of their middle plane. False if nothing does.
   bool take(int tool, double reach, NeedleState& s) const noexcept;
@@ -123,6 +125,8 @@ class NeedleBody {
   std::array<double, kNeedleTools> roll_{};                   // [rad], after the step
   std::array<FrictionPoint, kNeedleSamples> on_sheet_;
   Pose predicted_;
+  Vec3 dead_load_ = Vec3::Zero();                             // [N], of look_ahead(), at an arc
+  double dead_arc_ = 0.0;
   Mat3 inertia_W_;
   Trial now_, trial_;
 };

@@ -1,5 +1,6 @@
 #include "physics/vessel_wall.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -46,13 +47,21 @@ Mat3 frame_of(const Points& x, const std::array<int, 4>& n) noexcept {
   return f.allFinite() ? f : Mat3(Mat3::Identity());
 }
 
+/// Without the directions in which the element would rather buckle: stresses of the first shape (a ring sprung shut, a stretched tube
+/// with a free edge) make it indefinite (Teran, Sifakis, Irving & Fedkiw, SCA 2005).
+WallElements::Stiffness positive(const WallElements::Stiffness& K) {
+  const Eigen::SelfAdjointEigenSolver<WallElements::Stiffness> s(K);
+  if (s.eigenvalues()[0] > -1e-6 * s.eigenvalues()[23]) return K;
+  return s.eigenvectors() * s.eigenvalues().cwiseMax(0.0).asDiagonal() * s.eigenvectors().transpose();
+}
+
 /// Matrix of the first guess: inertia, the elements at rest and a soft bedding; held nodes keep a diagonal of their own and no coupling.
 /// Without the bedding the softest modes of the straight tube, turned into a bent one, stretch it: directions a thousand times too long.
 std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallElements& elements, const Vector& inertia, const std::vector<char>& held) {
   std::vector<SlabFactor::Block> blocks;
   double diagonal = 0.0;
   for (int e = 0; e < mesh.n_elements(); ++e) {
-    const auto K = elements.stiffness(e, mesh.nodes, true);
+    const auto K = positive(elements.stiffness(e, mesh.nodes, true));
     const auto& nodes = mesh.elements[static_cast<std::size_t>(e)];
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b) {

@@ -16,20 +16,9 @@
 #include "physics/vessel_wall_element.h"
 #include "physics/vessel_wall_factor.h"
 #include "physics/vessel_wall_springs.h"
+#include "physics/wall_state.h"
 
 namespace filum {
-
-/// A material point of the wall.
-struct WallPoint {
-  int element = -1;
-  Vec3 local = Vec3::Zero();  // xi around, eta along, zeta outward, each in [-1, 1]
-};
-
-struct WallState {
-  Points x, v;                    // [m], [m/s], 3 x n, frame W
-  std::vector<double> soundness;  // of each element: 1 whole, 0 gone
-  std::vector<Pose> clamp;        // of each part: where its clamp was at the end of the last step
-};
 
 struct WallOptions {
   double dt = 2e-3;            // [s]

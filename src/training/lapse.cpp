@@ -8,7 +8,29 @@
 namespace filum {
 namespace {
 
-Stitch from_passes(const TissueObservation& t, int a, int b, const Vec3& along) {
+/// Where on the cut: (angle around the vessel, height along it) or (x along the cut, y across it) of places at rest.
+class CutLine {
+ public:
+  explicit CutLine(const TissueDescription& d) : d_(d) {}
+  double angle(const Vec3& p) const {
+    const Vec3 r = p - d_.middle;
+    return std::atan2(r.dot(d_.axis.cross(d_.cut_along)), r.dot(d_.cut_along));
+  }
+  double turn(const Vec3& a, const Vec3& b) const { return std::remainder(angle(b) - angle(a), 2.0 * std::numbers::pi); }
+  double along(const Vec3& a, const Vec3& b) const { return d_.lumen ? d_.radius * turn(a, b) : (b - a).dot(d_.cut_along); }
+  double across(const Vec3& a, const Vec3& b) const {
+    const Vec3 span = b - a;
+    if (d_.lumen) return std::abs(span.dot(d_.axis));
+    const Vec3 flat(span.x(), span.y(), 0.0);
+    return std::sqrt(std::max(0.0, flat.squaredNorm() - flat.dot(d_.cut_along) * flat.dot(d_.cut_along)));
+  }
+  double position(const Vec3& a, const Vec3& b) const { return d_.lumen ? d_.radius * (angle(a) + 0.5 * turn(a, b)) : 0.5 * (a + b).dot(d_.cut_along); }
+
+ private:
+  const TissueDescription& d_;
+};
+
+Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut) {
   const PassObservation& p = t.passes[static_cast<std::size_t>(a)];
   const PassObservation& q = t.passes[static_cast<std::size_t>(b < 0 ? a : b)];
   Stitch s;
@@ -19,12 +41,9 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const Vec3& along) 
   s.bite[1] = whole ? std::abs(q.bite_exit) : std::numeric_limits<double>::quiet_NaN();
   s.entry_angle = p.entry_angle;
   s.exit_angle = q.exit_angle;
-  const Vec3 span = q.exit_rest - p.entry_rest;
-  const Vec3 flat(span.x(), span.y(), 0.0);
-  const double lengthwise = std::abs(flat.dot(along)), across = std::sqrt(std::max(0.0, flat.squaredNorm() - lengthwise * lengthwise));
-  s.obliquity = std::atan2(lengthwise, across);
+  s.obliquity = std::atan2(std::abs(cut.along(p.entry_rest, q.exit_rest)), cut.across(p.entry_rest, q.exit_rest));
   s.depth = std::min(p.depth_share, q.depth_share);
-  s.position = 0.5 * (p.entry_rest + q.exit_rest).dot(along);
+  s.position = cut.position(p.entry_rest, q.exit_rest);
   s.tension = std::max(p.tension, q.tension);
   s.peak_force = std::max(p.peak_force, q.peak_force);
   s.torn = std::max(p.torn, q.torn);
@@ -45,18 +64,21 @@ LapseRules load_lapse_rules(const std::string& path) {
   r.spacing_variation = file.number("spacing_variation", Range::positive());
   r.spacing_ratio = file.number("spacing_ratio", {1.0, 100.0});
   r.tear = file.quantity("tear", "um", Range::positive());
+  r.back_wall = file.quantity_or("back_wall", "deg", r.back_wall, Range::between(0.0, std::numbers::pi));
+  r.thread_inside = file.quantity_or("thread_inside", "mm", r.thread_inside, Range::positive());
   file.finish();
   return r;
 }
 
-std::vector<Stitch> stitches_of(const TissueObservation& t, const std::vector<double>& pass_time, const Vec3& along) {
+std::vector<Stitch> stitches_of(const TissueObservation& t, const std::vector<double>& pass_time, const TissueDescription& scene) {
+  const CutLine cut(scene);
   std::vector<Stitch> stitches;
   for (int k = 0; k < t.n_passes; ++k) {
     const PassObservation& p = t.passes[static_cast<std::size_t>(k)];
     if (!p.out) continue;
     const bool pairs = k + 1 < t.n_passes && t.passes[static_cast<std::size_t>(k + 1)].out && t.passes[static_cast<std::size_t>(k + 1)].side != p.side;
     const bool both = p.bite_entry * p.bite_exit < 0.0;
-    stitches.push_back(from_passes(t, k, !both && pairs ? k + 1 : -1, along));
+    stitches.push_back(from_passes(t, k, !both && pairs ? k + 1 : -1, cut));
     if (!both && pairs) ++k;
     if (static_cast<std::size_t>(k) < pass_time.size()) stitches.back().time = pass_time[static_cast<std::size_t>(k)];
   }
@@ -90,6 +112,25 @@ std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>&
   const double variation = std::sqrt(square) / mean, ratio = *std::max_element(gaps.begin(), gaps.end()) / *std::min_element(gaps.begin(), gaps.end());
   if (variation > rules.spacing_variation || ratio > rules.spacing_ratio) found.push_back({"unequal-spacing", -1, stitches.back().time, variation, "-"});
   return found;
+}
+
+void find_back_walls(const LapseRules& rules, const TissueObservation& t, const std::vector<double>& pass_time, const TissueDescription& scene,
+                     const std::vector<Stitch>& stitches, std::vector<Lapse>& found) {
+  if (!scene.lumen) return;
+  const CutLine cut(scene);
+  for (int k = 0; k + 1 < t.n_passes; ++k) {
+    const PassObservation &in = t.passes[static_cast<std::size_t>(k)], &out = t.passes[static_cast<std::size_t>(k + 1)];
+    if (!in.out || in.exit_depth < 0.5 || out.entry_depth < 0.5) continue;  // not through the lumen
+    const double turn = std::abs(cut.turn(in.exit_rest, out.entry_rest));
+    if (turn <= rules.back_wall) continue;
+    const auto of = std::find_if(stitches.begin(), stitches.end(), [&](const Stitch& s) { return s.first == k || s.second == k; });
+    const double time = static_cast<std::size_t>(k) < pass_time.size() ? pass_time[static_cast<std::size_t>(k)] : 0.0;
+    found.push_back({"back-wall", of == stitches.end() ? -1 : static_cast<int>(of - stitches.begin()), time, turn * 180.0 / std::numbers::pi, "deg"});
+  }
+}
+
+void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found) {
+  if (join.thread_inside > rules.thread_inside) found.push_back({"thread-in-lumen", -1, time, join.thread_inside, "m"});
 }
 
 }  // namespace filum

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/yaml_file.h"
+#include "training/join.h"
 #include "world/observation.h"
 
 namespace filum {
@@ -20,6 +21,8 @@ struct LapseRules {
   double spacing_variation = 0.25;  // coefficient of variation
   double spacing_ratio = 2.0;     // largest over smallest
   double tear = 20e-6;            // [m], torn length that counts
+  double back_wall = 1.05;        // [rad], around a vessel, between the two bites of one way through its lumen
+  double thread_inside = 0.5e-3;  // [m], thread left in the lumen
 };
 
 LapseRules load_lapse_rules(const std::string& path);
@@ -43,9 +46,14 @@ struct Lapse {
   const char* unit = "-";
 };
 
-/// `along_rest`: unit, direction of the cut in the tissue at rest.
-std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<double>& pass_time, const Vec3& along_rest);
+/// The cut of a card is straight, that of a vessel runs round its axis.
+std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<double>& pass_time, const TissueDescription& scene);
 std::vector<double> spacings_of(const std::vector<Stitch>& stitches);  // [m], between neighbours along the cut
 std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, double thickness);
+/// "back-wall": the needle came into the lumen at one place of the vessel and left it more than rules.back_wall around it.
+void find_back_walls(const LapseRules& rules, const TissueObservation& tissue, const std::vector<double>& pass_time, const TissueDescription& scene,
+                     const std::vector<Stitch>& stitches, std::vector<Lapse>& found);
+/// "thread-in-lumen".
+void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found);
 
 }  // namespace filum

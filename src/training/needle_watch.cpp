@@ -129,7 +129,9 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
     report_.takes += name == "needle-taken" ? 1 : 0;
     report_.drops += name == "needle-dropped" ? 1 : 0;
   }
+  time_ = o.time;
   tissue_.n_passes = o.tissue.n_passes;
+  tissue_.soundness = o.tissue.soundness;
   for (int k = 0; k < o.tissue.n_passes; ++k) {
     const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(k)];
     tissue_.passes[static_cast<std::size_t>(k)] = p;
@@ -143,7 +145,7 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
   kept_ = 0.0;
 }
 
-NeedleReport NeedleWatch::report() const {
+NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join) const {
   NeedleReport r = report_;
   if (angle_time_ > 0.0) {
     r.angle_error = angle_sum_ / angle_time_;
@@ -153,8 +155,12 @@ NeedleReport NeedleWatch::report() const {
   r.has_tissue = task_.has_tissue;
   if (!r.has_tissue) return r;
   r.thickness = scene_.tissue.thickness;
-  r.stitches = stitches_of(tissue_, pass_time_, scene_.tissue.cut_along);
+  r.stitches = stitches_of(tissue_, pass_time_, scene_.tissue);
   r.lapses = lapses_of(task_.lapses, r.stitches, r.thickness);
+  find_back_walls(task_.lapses, tissue_, pass_time_, scene_.tissue, r.stitches, r.lapses);
+  r.join = join;
+  if (join) find_join_lapses(task_.lapses, *join, time_, r.lapses);
+  r.soundness = tissue_.soundness;
   r.rules = task_.lapses.title;
   return r;
 }

@@ -8,6 +8,7 @@
 // Events: goal-done. Test: needle_watch_test.
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "training/needle_task.h"
@@ -29,6 +30,8 @@ struct NeedleReport {
   std::vector<Stitch> stitches;
   std::vector<Lapse> lapses;
   std::string rules;                     // title of the rules
+  double soundness = 1.0;                // of the weakest element of the tissue at the end: 1 whole, 0 gone
+  std::optional<JoinReport> join;        // of a vessel with the clamps off
 };
 
 /// What a rubric line looks at; NaN for measures of other tasks.
@@ -41,7 +44,8 @@ class NeedleWatch {
   void observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events);
   int step() const { return step_; }
   bool done() const { return step_ == static_cast<int>(task_.goals.size()); }
-  NeedleReport report() const;
+  /// `join`: what the test of the join said, if there was one.
+  NeedleReport report(const std::optional<JoinReport>& join = std::nullopt) const;
 
  private:
   bool met(const NeedleGoal& g, const Observation& o, double dt);
@@ -53,7 +57,7 @@ class NeedleWatch {
   TissueObservation tissue_;             // newest passes
   std::vector<double> pass_time_;        // [s], when each came out
   int step_ = 0;
-  double kept_ = 0.0;                    // [s]
+  double kept_ = 0.0, time_ = 0.0;       // [s]
   double angle_sum_ = 0.0, share_sum_ = 0.0, angle_time_ = 0.0, square_ = 0.0, present_time_ = 0.0;
 };
 

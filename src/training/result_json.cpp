@@ -126,6 +126,23 @@ Json stitch_json(const Stitch& s, double thickness) {
           {"torn_m", finite(s.torn)}};
 }
 
+/// Of the walls alone at a held pressure (world/join_test.h).
+Json leak_json(const JoinReport& j) {
+  constexpr double kMlPerMin = 60e6;
+  Json sectors = Json::array();
+  for (std::size_t k = 0; k < j.sector_flow.size(); ++k) sectors.push_back(finite(kMlPerMin * j.sector_flow[k]));
+  return {{"total_ml_per_min", finite(kMlPerMin * j.leak)},
+          {"per_sector", sectors},
+          {"gap_m", finite(j.sector_gap)},
+          {"open_area_m2", finite(j.area)},
+          {"held_mmhg", finite(j.pressure / kMmHg)},
+          {"narrowing", finite(j.narrowing)},
+          {"flow_if_tight_ml_per_min", finite(kMlPerMin * j.through)},
+          {"patent", j.patent},
+          {"thread_in_lumen_m", finite(j.thread_inside)},
+          {"solver_sound", j.sound}};
+}
+
 void add_needle(const NeedleReport& n, Json& json) {
   json["needle"] = {{"takes", n.takes}, {"drops", n.drops}, {"angle_error_rad", finite(n.angle_error)}, {"held_at_share", finite(n.share)}, {"present_error_m", finite(n.present_error)}};
   if (!n.has_tissue) return;
@@ -135,6 +152,8 @@ void add_needle(const NeedleReport& n, Json& json) {
   json["lapses"] = Json::array();
   for (const Lapse& l : n.lapses) json["lapses"].push_back({{"name", l.name}, {"stitch", l.stitch}, {"time", finite(l.time)}, {"value", finite(l.value)}, {"unit", l.unit}});
   json["lapse_rules"] = n.rules;
+  json["tissue_soundness"] = finite(n.soundness);
+  if (n.join) json["leak"] = leak_json(*n.join);
 }
 
 Json events_json(const std::vector<TaskEvent>& events) {

@@ -166,7 +166,7 @@ void TaskSession::measure_tails(const KnotReport& knot, Measures& measures) cons
   measures.long_tail = std::max(low, high);
 }
 
-Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
+Result TaskSession::finish(const std::optional<SecurityTest>& security, const std::optional<JoinReport>& join) const {
   Result r;
   r.task = task_.name;
   r.title = task_.title;
@@ -176,7 +176,7 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security) const {
   r.security = security;
   r.events = events_;
   if (retraction_) r.pressure = retraction_->report();
-  if (needle_) r.needle = needle_->report();
+  if (needle_) r.needle = needle_->report(join);
   if (observed_ && task_.has_knot()) {
     const ThreadPart part = tied_part(last_);
     const Points nodes = last_.positions.middleCols(part.first, std::max(0, part.nodes()));

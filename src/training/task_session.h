@@ -56,7 +56,7 @@ class TaskSession {
   const Task& task() const { return task_; }
 
   /// Classifies the knot anew and scores. May be called again, e.g. once the security test has been made.
-  Result finish(const std::optional<SecurityTest>& security = std::nullopt) const;
+  Result finish(const std::optional<SecurityTest>& security = std::nullopt, const std::optional<JoinReport>& join = std::nullopt) const;
 
   static constexpr std::size_t kMaxEvents = 4096;
   static constexpr double kEventPause = 0.25;  // [s]

@@ -36,6 +36,7 @@ struct PassObservation {
   Vec3 entry_W = Vec3::Zero(), exit_W = Vec3::Zero();        // [m], where they are now
   Vec3 entry_rest = Vec3::Zero(), exit_rest = Vec3::Zero();  // [m], in the tissue at rest
   bool out = false;                       // the point has come out again
+  double entry_depth = 0.0, exit_depth = 0.0;  // share of the wall from outside: 0 outer surface, 1 inner
   double entry_angle = 0.0, exit_angle = 0.0;  // [rad], of the needle against the surface
   double bite_entry = 0.0, bite_exit = 0.0;    // [m], distance from the nearest cut edge at rest
   double depth_share = 0.0;               // greatest depth over the thickness there
@@ -54,12 +55,16 @@ struct TissueObservation {
   int n_passes = 0;
   std::array<PassObservation, kMaxPasses> passes;
   double point_force = 0.0;               // [N], of the tissue on the needle's point
+  double soundness = 1.0;                 // of the weakest element: 1 whole, 0 gone
 };
 
 struct TissueDescription {
   std::string name, kind;                 // "card" | "vessel"
   double thickness = 0.0;                 // [m]
-  Vec3 cut_along = Vec3::UnitY();         // unit, direction of the cut at rest
+  Vec3 cut_along = Vec3::UnitY();         // unit, direction of the cut at rest; of a vessel: where its angle is zero
+  bool lumen = false;                     // two stumps of a vessel: the cut runs round an axis
+  Vec3 axis = Vec3::UnitY(), middle = Vec3::Zero();  // unit; [m], between the cut edges, at rest
+  double radius = 0.0;                    // [m], of the outer surface at rest
   std::vector<std::array<int, 3>> triangles;
   Points rest;                            // [m], 3 x n
 };

@@ -94,7 +94,8 @@ void NeedleScene::before_thread(const State& s, ImplicitRod& rod) noexcept {
   RodTether& swage = on_thread.emplace_back();
   swage.at_end = true;
   if (tissue_) tissue_->hold(s.tissue, s.needle.X_WN, s.thread, body_.tethers, on_thread);
-  swage.stiffness = body_.look_ahead(s.needle, options_, 0.0, swage.anchor);
+  const bool held = std::any_of(s.needle.grips.begin(), s.needle.grips.end(), [](const NeedleGrip& g) { return g.held != 0; });
+  swage.stiffness = body_.look_ahead(s.needle, options_, 0.0, swage.anchor, held ? s.needle.pull : Vec3::Zero());  // loose, it would fly off
 }
 
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {
@@ -108,6 +109,7 @@ void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexc
   for (std::size_t i = 0; i < body_.tools.size(); ++i) before[i] = s.needle.grips[i].held != 0;
   const NeedleSummary summary = body_.step(s.needle, options_);
   if (!summary.sound || summary.residual > kTroubleForce) say(o, "solver-trouble", -1, summary.residual, "N");
+  s.needle.pull = body_.tethers.back().force;
   body_.tethers.pop_back();
   if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments, s.force, s.torque);
   if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.thread, body_.tethers, rod.tethers.list, o);

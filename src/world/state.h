@@ -9,7 +9,7 @@
 #include "physics/instrument.h"
 #include "physics/needle.h"
 #include "world/brain_model.h"
-#include "world/vessel_model.h"
+#include "world/vessel_state.h"
 #include "physics/pellet.h"
 
 namespace filum {

@@ -72,7 +72,7 @@ std::uint64_t hash_pellets(const State& s, std::uint64_t h) noexcept {
 
 std::uint64_t hash_needle(const NeedleState& n) noexcept {
   std::uint64_t h = hash_pose(n.X_WN, 0);
-  for (const Vec3* v : {&n.v, &n.w}) h = hash_bytes(v->data(), 3 * sizeof(double), h);
+  for (const Vec3* v : {&n.v, &n.w, &n.pull}) h = hash_bytes(v->data(), 3 * sizeof(double), h);
   for (const NeedleGrip& g : n.grips) {
     const std::array<double, 4> row = {static_cast<double>(g.held), g.arc, g.half, g.roll};
     h = hash_bytes(row.data(), sizeof(row), h);

@@ -9,28 +9,14 @@
 // Neglects: thickness of the thread, thread across the rim between two samples, jaws faster than their radius a step (75 mm/s).
 // Test: vessel_contact_test.
 
-#include <array>
 #include <vector>
 
 #include "physics/implicit_rod.h"
 #include "physics/instrument.h"
 #include "physics/needle_track.h"
+#include "world/vessel_state.h"
 
 namespace filum {
-
-/// A point of the thread that pushes against the surface. Part of the state.
-struct ThreadTouch {
-  double arc = 0.0;            // [m], of the thread
-  WallPoint at;                // of the surface
-  Vec3 normal = Vec3::UnitZ();  // outward, when last looked at
-  double load = 0.0;           // [N], normal, in the last step
-};
-inline constexpr int kMostTouches = 48;
-
-struct TouchState {
-  std::int32_t n = 0;
-  std::array<ThreadTouch, kMostTouches> touches;
-};
 
 class VesselContact {
  public:

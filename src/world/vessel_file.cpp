@@ -5,6 +5,7 @@
 #include "world/model_file.h"
 #include "world/needle_model.h"
 #include "world/vessel_scene.h"
+#include "world/wall_file.h"
 
 namespace filum {
 namespace {
@@ -39,6 +40,45 @@ VesselMesh read_card(const YamlNode& node, double thickness) {
   return mesh;
 }
 
+void read_flaps(const YamlNode& node, VesselModel& v) {
+  v.name = node.text("name");
+  for (const YamlNode& layer : node.items("layers")) v.layers.push_back(read_layer(layer));
+  for (const WallLayer& l : v.layers) v.thickness += l.thickness;
+  v.mesh = read_card(node, v.thickness);
+  v.wall.damping = node.quantity("damping", "1/s", Range::not_negative());
+}
+
+/// Two stumps of a preset in a double clamp, cut edges facing, the bar along y. Where x is least counts as the angle zero.
+void read_stumps(const std::string& root, const YamlNode& node, Model& m, VesselModel& v) {
+  v.name = node.text("preset");
+  const std::string file = "models/vessel/" + v.name + ".yaml";
+  VesselPreset preset = load_vessel(root + "/" + file);
+  if (!preset.tube) node.refuse("preset", "a vessel that is a tube");
+  m.sources.push_back(file);
+  TubeShape& s = preset.shape;
+  s.length = node.quantity("stump", "mm", Range::positive());
+  s.around = node.integer("around", 8, 64);
+  s.along = node.integer("along", 2, 200);
+  s.edge_grading = node.number("grading", Range::between(0.2, 5.0));
+  v.layers = preset.layers;
+  v.thickness = s.thickness;
+  const double dt = v.wall.dt;
+  v.wall = preset.wall;
+  v.wall.dt = dt;
+  v.clamp.gap = node.quantity("gap", "mm", Range::not_negative());
+  v.clamp.turn = node.quantity("turn", "deg", Range::between(-std::numbers::pi, std::numbers::pi));
+  Mat3 bar;
+  bar << -Vec3::UnitX(), Vec3::UnitZ(), Vec3::UnitY();
+  v.clamp.X_WB = {node.vec3("centre", "mm"), Quat(bar)};
+  v.cut_along = -Vec3::UnitX();
+  v.lumen = true;
+  v.mesh = make_stumps(s, v.clamp);
+  for (Eigen::Index i = 0; i < v.mesh.nodes.cols(); ++i) {
+    const Vec3 r = v.mesh.nodes.col(i) - v.clamp.X_WB.p;
+    v.radius = std::max(v.radius, (r - r.y() * Vec3::UnitY()).norm());
+  }
+}
+
 }  // namespace
 
 TrackMaterial load_track(const std::string& path) {
@@ -69,13 +109,12 @@ TrackMaterial load_track(const std::string& path) {
 
 void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
   auto v = std::make_shared<VesselModel>();
-  v->kind = node.choice("kind", {"card"});
-  v->name = node.text("name");
-  for (const YamlNode& layer : node.items("layers")) v->layers.push_back(read_layer(layer));
-  for (const WallLayer& l : v->layers) v->thickness += l.thickness;
-  v->mesh = read_card(node, v->thickness);
+  v->kind = node.choice("kind", {"card", "vessel"});
   v->wall.dt = m.step.dt;
-  v->wall.damping = node.quantity("damping", "1/s", Range::not_negative());
+  if (v->kind == "card")
+    read_flaps(node, *v);
+  else
+    read_stumps(root, node, m, *v);
   const std::string file = "models/track/" + node.text("track") + ".yaml";
   m.sources.push_back(file);
   v->track = load_track(root + "/" + file);

@@ -11,7 +11,7 @@ namespace filum {
 
 TrackMaterial load_track(const std::string& path);
 
-/// `tissue: { kind: card, ... }`. The scene's needle is known. Throws InputError.
+/// `tissue: { kind: card, ... }` or `{ kind: vessel, preset: human-digital-artery, ... }`. The scene's needle is known. Throws InputError.
 void read_tissue(const std::string& root, const YamlNode& node, Model& m);
 
 }  // namespace filum

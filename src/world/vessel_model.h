@@ -1,11 +1,12 @@
 #pragma once
-// Tissue to be stitched: the constant part of a scene, and its state.
+// Tissue to be stitched: the constant part of a scene.
 
 #include <string>
 #include <vector>
 
 #include "physics/needle_track.h"
-#include "world/vessel_contact.h"
+#include "physics/vessel_clamp.h"
+#include "physics/vessel_wall.h"
 
 namespace filum {
 
@@ -16,13 +17,10 @@ struct VesselModel {
   WallOptions wall;
   TrackMaterial track;
   double thickness = 0.0;             // [m]
-  Vec3 cut_along = Vec3::UnitX();     // unit, direction of the cut at rest
-};
-
-struct VesselState {
-  WallState wall;
-  TrackState tracks;
-  TouchState touches;
+  Vec3 cut_along = Vec3::UnitX();     // unit, direction of the cut at rest; of a vessel: where its angle is zero
+  bool lumen = false;                 // two stumps in a double clamp
+  DoubleClamp clamp;                  // of these
+  double radius = 0.0;                // [m], outer, as first made
 };
 
 }  // namespace filum

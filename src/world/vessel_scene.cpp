@@ -40,6 +40,10 @@ void VesselScene::describe(TissueDescription& d) const {
   d.kind = model_.kind;
   d.thickness = model_.thickness;
   d.cut_along = model_.cut_along;
+  d.lumen = model_.lumen;
+  d.axis = model_.clamp.X_WB.q * Vec3::UnitZ();
+  d.middle = model_.clamp.X_WB.p;
+  d.radius = model_.radius;
   d.rest = model_.mesh.nodes;
   for (const Triangle& t : wall_.triangles()) d.triangles.push_back({t[0], t[1], t[2]});
 }
@@ -68,6 +72,7 @@ void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread,
   for (int k = 0; k < n && o.n_events < static_cast<int>(o.events.size()); ++k)
     o.events[static_cast<std::size_t>(o.n_events++)] = {events[static_cast<std::size_t>(k)].name, -1, events[static_cast<std::size_t>(k)].value, "N"};
   contact_.follow(wall_, s.wall, s.touches, s.tracks, thread, on_thread);
+  for (int part = 0; part < std::min(2, wall_.n_parts()); ++part) wall_.set_pressure(part, s.pressure[static_cast<std::size_t>(part)]);
   const WallSummary summary = wall_.step(s.wall);
   if (!summary.sound && o.n_events < static_cast<int>(o.events.size()))
     o.events[static_cast<std::size_t>(o.n_events++)] = {"solver-trouble", -1, summary.residual, "N"};
@@ -79,6 +84,7 @@ void VesselScene::observe(const VesselState& s, const RodState& thread, Observat
   t.positions = s.wall.x;
   t.n_passes = s.tracks.n;
   t.point_force = s.tracks.point.force;
+  t.soundness = *std::min_element(s.wall.soundness.begin(), s.wall.soundness.end());
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   for (int k = 0; k < s.tracks.n; ++k) {
     const NeedleTrack& track = s.tracks.tracks[static_cast<std::size_t>(k)];
@@ -90,11 +96,13 @@ void VesselScene::observe(const VesselState& s, const RodState& thread, Observat
     p.entry_W = wall_.position(s.wall, in);
     p.entry_rest = tracks_.walk().at_rest(wall_, track.entry);
     p.entry_angle = track.entry_angle;
+    p.entry_depth = wall_.depth_at(track.entry);
     p.bite_entry = track.bite_entry;
     if (p.out) {
       p.exit_W = wall_.position(s.wall, track.n > 0 ? track.knots[static_cast<std::size_t>(track.n - 1)].at : track.exit);
       p.exit_rest = tracks_.walk().at_rest(wall_, track.exit);
       p.exit_angle = track.exit_angle;
+      p.exit_depth = wall_.depth_at(track.exit);
       p.bite_exit = track.bite_exit;
     }
     p.depth_share = std::max(0.0, track.deep - track.shallow);
@@ -127,8 +135,8 @@ std::uint64_t hash_vessel(const VesselState& s) noexcept {
     const std::array<double, 5> row = {touch.arc, touch.load, touch.normal.x(), touch.normal.y(), touch.normal.z()};
     h = hash_bytes(row.data(), sizeof(row), hash_point(touch.at, h));
   }
-  const std::array<double, 7> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,
-                                     t.point_before.x(), t.point_before.y(), t.point_before.z()};
+  const std::array<double, 9> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,
+                                     t.point_before.x(), t.point_before.y(), t.point_before.z(), s.pressure[0], s.pressure[1]};
   return hash_point(t.point.at, hash_bytes(row.data(), sizeof(row), h));
 }
 

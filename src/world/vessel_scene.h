@@ -4,6 +4,7 @@
 #include "physics/implicit_rod.h"
 #include "physics/needle.h"
 #include "world/observation.h"
+#include "world/vessel_contact.h"
 #include "world/vessel_model.h"
 
 namespace filum {

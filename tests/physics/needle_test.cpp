@@ -131,6 +131,22 @@ TEST(Needle, StiffnessSeenAheadIsThatOfTheGrip) {
   EXPECT_LT((point - Vec3(0, 0, 0.5e-3)).norm(), 10e-6) << "the curved wire is pressed into the pads' plane";
 }
 
+TEST(Needle, SeenAheadUnderItsLoadTheSpringGivesThatLoadBack) {
+  Held h(5.0);
+  const double arc = 0.1 * h.shape.length();  // a lever of half the needle: large turns
+  const Vec3 load(2e-3, -1e-3, 3e-3);
+  Vec3 rest, loaded;
+  const Mat3 k = h.body.look_ahead(h.state, h.options, arc, rest, load);
+  RodTether pull;  // the same load as a soft spring from far away
+  pull.arc = arc;
+  pull.stiffness = 1e-4 * Mat3::Identity();
+  pull.anchor = h.state.X_WN * h.shape.point(arc) + load / 1e-4;
+  h.body.tethers.assign(1, pull);
+  h.body.step(h.state, h.options);
+  loaded = h.state.X_WN * h.shape.point(arc);
+  EXPECT_LT((k * (loaded - rest) - load).norm(), 1e-2 * load.norm());
+}
+
 TEST(Needle, StepsAllocateNothingAndRepeatExactly) {
   auto run = [](int steps) {
     Held h(0.5);

@@ -66,6 +66,25 @@ TEST(VesselWall, ComesToRestAtEquilibrium) {
   EXPECT_LT((x - state.x).cwiseAbs().maxCoeff(), 2e-3 * moved);
 }
 
+/// Stresses of the first shape (stretched, sprung shut) make its matrix indefinite; the wall finds its shape all the same.
+TEST(VesselWall, OpensStretchedAndSprungShut) {
+  TubeShape shape = small_tube();
+  shape.stretch = 1.2;
+  shape.opening_angle = 80.0 * std::numbers::pi / 180.0;
+  std::vector<WallLayer> soft = artery();
+  for (WallLayer& l : soft) {
+    l.law.mu = 6e3;
+    l.law.k1 = 14e3;
+  }
+  VesselWall wall(make_tube(shape), soft, {});
+  WallState state = wall.first_state();
+  const double before = state.x.row(2).maxCoeff();
+  EXPECT_LT(wall.settle(state, 800), 800);
+  EXPECT_TRUE(state.x.allFinite());
+  EXPECT_LT(state.x.row(2).maxCoeff(), 0.9 * before) << "the free edge draws back";
+  EXPECT_GT(state.x.row(2).maxCoeff(), 0.7 * before);
+}
+
 TEST(VesselWall, TurnsOverWithItsClamp) {
   VesselWall wall = stump();
   WallState state = wall.first_state();

@@ -11,6 +11,12 @@ namespace {
 
 constexpr double kThickness = 0.15e-3;
 
+TissueDescription card() {
+  TissueDescription d;
+  d.cut_along = Vec3::UnitX();
+  return d;
+}
+
 /// A stitch across a cut along x: in on one side, out on the other.
 void add_stitch(TissueObservation& t, double x, double bite_in, double bite_out, double skew = 0.0) {
   for (int side = 0; side < 2; ++side) {
@@ -28,7 +34,7 @@ void add_stitch(TissueObservation& t, double x, double bite_in, double bite_out,
 }
 
 std::vector<Lapse> lapses(const TissueObservation& t) {
-  return lapses_of(LapseRules(), stitches_of(t, std::vector<double>(kMaxPasses, 1.0), Vec3::UnitX()), kThickness);
+  return lapses_of(LapseRules(), stitches_of(t, std::vector<double>(kMaxPasses, 1.0), card()), kThickness);
 }
 bool has(const std::vector<Lapse>& list, const std::string& name) {
   return std::any_of(list.begin(), list.end(), [&](const Lapse& l) { return name == l.name; });
@@ -42,7 +48,7 @@ TissueObservation good() {
 
 TEST(Lapse, GoodStitchesHaveNone) {
   EXPECT_TRUE(lapses(good()).empty());
-  const auto s = stitches_of(good(), {}, Vec3::UnitX());
+  const auto s = stitches_of(good(), {}, card());
   ASSERT_EQ(s.size(), 4u);
   EXPECT_NEAR(s[1].bite[0], 0.3e-3, 1e-12);
   EXPECT_NEAR(s[1].bite[1], 0.3e-3, 1e-12);
@@ -76,7 +82,7 @@ TEST(Lapse, HalfAStitchHasOneBite) {
   TissueObservation t;
   add_stitch(t, 0.0, 0.3e-3, 0.3e-3);
   t.n_passes = 1;
-  const auto s = stitches_of(t, {2.5}, Vec3::UnitX());
+  const auto s = stitches_of(t, {2.5}, card());
   ASSERT_EQ(s.size(), 1u);
   EXPECT_TRUE(std::isnan(s[0].bite[1]));
   EXPECT_EQ(s[0].time, 2.5);
@@ -88,6 +94,83 @@ TEST(Lapse, RulesComeFromAFileThatSaysWhereFrom) {
     EXPECT_FALSE(r.source.empty());
     EXPECT_NEAR(r.oblique, 0.349, 1e-3);
   }
+}
+
+constexpr double kRadius = 0.5e-3;
+
+TissueDescription tube() {
+  TissueDescription d;
+  d.lumen = true;
+  d.axis = Vec3::UnitY();
+  d.cut_along = -Vec3::UnitX();
+  d.radius = kRadius;
+  return d;
+}
+
+/// A bite of a tube's wall at `angle`, `y` from the cut; `inwards`: outside-in.
+PassObservation bite(int side, double angle, double y, bool inwards) {
+  PassObservation p;
+  p.state = PassObservation::State::thread;
+  p.out = true;
+  p.side = side;
+  const auto at = [&](double r) { return Vec3(-r * std::cos(angle), y, r * std::sin(angle)); };
+  const Vec3 outer = at(kRadius), inner = at(kRadius - kThickness);
+  p.entry_rest = inwards ? outer : inner;
+  p.exit_rest = inwards ? inner : outer;
+  p.entry_depth = inwards ? 0.0 : 1.0;
+  p.exit_depth = inwards ? 1.0 : 0.0;
+  p.bite_entry = p.bite_exit = std::abs(y);
+  p.entry_angle = p.exit_angle = 1.2;
+  p.depth_share = 1.0;
+  return p;
+}
+
+std::vector<Lapse> tube_lapses(const std::vector<PassObservation>& bites) {
+  TissueObservation t;
+  for (const PassObservation& p : bites) t.passes[static_cast<std::size_t>(t.n_passes++)] = p;
+  const std::vector<double> times(kMaxPasses, 2.0);
+  const auto stitches = stitches_of(t, times, tube());
+  auto found = lapses_of(LapseRules(), stitches, kThickness);
+  find_back_walls(LapseRules(), t, times, tube(), stitches, found);
+  return found;
+}
+
+TEST(Lapse, StitchesOfATubeAreMeasuredAroundIt) {
+  TissueObservation t;
+  for (const double angle : {0.3, 3.0}) {  // the second runs over the seam of the angle
+    t.passes[static_cast<std::size_t>(t.n_passes++)] = bite(0, angle, -0.3e-3, true);
+    t.passes[static_cast<std::size_t>(t.n_passes++)] = bite(1, angle + 0.3, 0.3e-3, false);
+  }
+  const auto s = stitches_of(t, {}, tube());
+  ASSERT_EQ(s.size(), 2u);
+  EXPECT_NEAR(s[0].position, kRadius * 0.45, 1e-9);
+  for (const Stitch& k : s) EXPECT_NEAR(k.obliquity, std::atan2(0.3 * kRadius, 0.6e-3), 1e-9);
+}
+
+TEST(Lapse, BackWallOfATube) {
+  EXPECT_TRUE(tube_lapses({bite(0, 1.5, -0.3e-3, true), bite(1, 1.55, 0.3e-3, false)}).empty());
+  const auto caught = tube_lapses({bite(0, 1.5, -0.3e-3, true), bite(0, -1.4, -0.3e-3, false)});
+  EXPECT_TRUE(has(caught, "back-wall")) << "out through the far side of the same stump";
+  const auto across = tube_lapses({bite(0, 1.5, -0.3e-3, true), bite(1, -1.4, 0.3e-3, false)});
+  ASSERT_TRUE(has(across, "back-wall"));
+  for (const Lapse& l : across)
+    if (std::string(l.name) == "back-wall") {
+      EXPECT_NEAR(l.value, 2.9 * 180.0 / 3.14159265358979, 1e-6);
+      EXPECT_EQ(l.stitch, 0);
+    }
+  EXPECT_FALSE(has(tube_lapses({bite(0, 1.5, -0.3e-3, true), bite(0, -1.4, -0.3e-3, true)}), "back-wall")) << "two bites from outside";
+}
+
+TEST(Lapse, ThreadLeftInTheLumen) {
+  JoinReport join;
+  std::vector<Lapse> found;
+  join.thread_inside = 0.4e-3;
+  find_join_lapses(LapseRules(), join, 9.0, found);
+  EXPECT_TRUE(found.empty());
+  join.thread_inside = 0.8e-3;
+  find_join_lapses(LapseRules(), join, 9.0, found);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_STREQ(found[0].name, "thread-in-lumen");
 }
 
 }  // namespace

@@ -94,5 +94,72 @@ TEST(VesselScene, SurvivesWildHands) {
   }
 }
 
+std::shared_ptr<const Model> stumps() {
+  static const auto model = load_model(FILUM_SOURCE_DIR, "vessel-stitch");
+  return model;
+}
+
+TEST(VesselScene, StumpsStandOpenAndStill) {
+  World w(stumps());
+  Inputs in;
+  const Points before = w.observation().tissue.positions;
+  const TissueDescription& d = w.description().tissue;
+  EXPECT_EQ(d.kind, "vessel");
+  EXPECT_TRUE(d.lumen);
+  EXPECT_EQ(d.triangles.size(), 2 * stumps()->vessel->mesh.faces.size());
+  for (int k = 0; k < 100; ++k) w.step(in);
+  EXPECT_LT((w.observation().tissue.positions - before).cwiseAbs().maxCoeff(), 2e-6);
+  EXPECT_EQ(w.observation().tissue.soundness, 1.0);
+  const VesselMesh& mesh = stumps()->vessel->mesh;
+  ASSERT_EQ(mesh.edge_ring.size(), 2u);
+  for (std::size_t part = 0; part < 2; ++part)
+    for (const int i : mesh.edge_ring[part]) {
+      const Vec3 p = w.observation().tissue.positions.col(i);
+      EXPECT_NEAR(p.y(), part == 0 ? -0.3e-3 : 0.3e-3, 20e-6);
+      EXPECT_NEAR(std::hypot(p.x(), p.z()), d.radius - d.thickness, 20e-6);
+    }
+}
+
+/// The point of the closed forceps in the lumen lifts the wall from within; from above it presses the same wall down.
+TEST(VesselScene, JawsTouchStumpsInsideAndOutside) {
+  for (const double side : {1.0, -1.0}) {
+    World w(stumps());
+    Inputs in;
+    ToolInput& t = in.tools[0];
+    t.valid = true;
+    t.grip_angle = 0.0;
+    const double start = side > 0.0 ? 0.1e-3 : 0.7e-3, end = side > 0.0 ? 0.36e-3 : 0.46e-3;
+    Mat3 frame;  // handle out through the gap from within, upward from above
+    const Vec3 handle = side > 0.0 ? Vec3(0, 0.96, 0.28) : Vec3(0, 0, 1);
+    frame << Vec3::UnitX(), handle.cross(Vec3::UnitX()), handle;
+    t.X_WD.q = Quat(frame);
+    double moved = 0.0;
+    for (int k = 0; k < 700; ++k) {
+      const double f = std::min(1.0, k / 600.0);
+      t.X_WD.p = Vec3(0.0, -0.6e-3 + (k < 200 && side > 0.0 ? 5e-6 * (200 - k) : 0.0), start + f * (end - start));
+      w.step(in);
+    }
+    const double felt = w.observation().tools[0].f_T_W.z();
+    const Points& now = w.observation().tissue.positions;
+    for (Eigen::Index i = 0; i < now.cols(); ++i)
+      if (now(1, i) < -0.3e-3 && now(1, i) > -1.0e-3 && now(2, i) > 0.2e-3) moved = std::max(moved, side * (now(2, i) - w.description().tissue.rest(2, i)));
+    EXPECT_LT(side * felt, -1e-4) << "the tissue pushes back";
+    EXPECT_GT(moved, 5e-6);
+  }
+}
+
+TEST(VesselScene, StumpsSurviveWildHands) {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    World w(stumps());
+    WildHands hands(seed);
+    for (int k = 0; k < 500; ++k) {
+      w.step(hands.next());
+      const State& s = w.state();
+      ASSERT_TRUE(s.needle.X_WN.finite() && s.thread.x.leftCols(s.thread.n).allFinite() && s.tissue.wall.x.allFinite()) << seed << ' ' << k;
+    }
+    EXPECT_LT(w.observation().tissue.positions.cwiseAbs().maxCoeff(), 10e-3) << "the stumps are in their clamp, seed " << seed;
+  }
+}
+
 }  // namespace
 }  // namespace filum

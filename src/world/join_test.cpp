@@ -1,0 +1,122 @@
+#include "world/join_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string_view>
+
+#include "physics/vessel_leak.h"
+#include "world/vessel_model.h"
+#include "world/world.h"
+
+namespace filum {
+namespace {
+
+constexpr double kFree = 0.5e-3;  // [m], of thread beside a bite that may lie in the lumen
+
+/// Is q in the tube through these rings?
+bool within(const std::vector<LumenRing>& rings, const Vec3& q) {
+  for (std::size_t k = 1; k < rings.size(); ++k) {
+    const Vec3 a = rings[k - 1].middle, run = rings[k].middle - a;
+    const double t = (q - a).dot(run) / run.squaredNorm();
+    if (t < 0.0 || t > 1.0) continue;
+    const double area = (1.0 - t) * rings[k - 1].area + t * rings[k].area;
+    if ((q - a - t * run).squaredNorm() * std::numbers::pi < area) return true;
+  }
+  return false;
+}
+
+struct Stretch {
+  double low, high;
+};
+
+/// Thread between the two passes of a stitch (one out of a stump, the next into the other), with some on either side.
+std::vector<Stretch> between_bites(const TrackState& s, double whole) {
+  std::vector<Stretch> list;
+  for (int k = 0; k < s.n; ++k) {
+    const NeedleTrack& t = s.tracks[static_cast<std::size_t>(k)];
+    if (t.n == 0) continue;
+    Stretch own{whole + t.knots[0].strand, whole + t.knots[0].strand};
+    for (int j = 0; j < t.n; ++j) {
+      own.low = std::min(own.low, whole + t.knots[static_cast<std::size_t>(j)].strand);
+      own.high = std::max(own.high, whole + t.knots[static_cast<std::size_t>(j)].strand);
+    }
+    if (!list.empty() && k > 0 && s.tracks[static_cast<std::size_t>(k - 1)].part != t.part) list.back() = {std::min(list.back().low, own.low), std::max(list.back().high, own.high)};
+    else list.push_back({own.low - kFree, own.high + kFree});
+  }
+  return list;
+}
+
+double lumen_area(const std::vector<LumenRing>& rings) {
+  std::vector<double> areas;
+  for (const LumenRing& r : rings) areas.push_back(r.area);
+  std::nth_element(areas.begin(), areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2), areas.end());
+  return areas[areas.size() / 2];
+}
+
+/// Steps the scene while the pressures rise, one stump after the other. False if something went wrong on the way.
+bool let_blood_in(World& world, const JoinTestOptions& o) {
+  const double dt = world.description().dt;
+  const int rise = static_cast<int>(std::lround(o.rise / dt)), all = 2 * rise + static_cast<int>(std::lround(o.hold / dt));
+  State s = world.state();
+  bool sound = true;
+  for (int k = 1; k <= all; ++k) {
+    for (int part = 0; part < 2; ++part)
+      s.tissue.pressure[static_cast<std::size_t>(part)] = o.pressure * std::clamp(static_cast<double>(k - part * rise) / rise, 0.0, 1.0);
+    if (k <= 2 * rise) world.restore(s);
+    world.step(Inputs{});
+    if (k <= 2 * rise) s = world.state();
+    const Observation& now = world.observation();
+    for (int e = 0; e < now.n_events; ++e) sound = sound && std::string_view(now.events[static_cast<std::size_t>(e)].name) != "solver-trouble";
+  }
+  return sound && world.state().tissue.wall.x.allFinite();
+}
+
+}  // namespace
+
+double thread_in_lumen(const Model& model, const State& state) {
+  const RodState& t = state.thread;
+  const VesselMesh& mesh = model.vessel->mesh;
+  const std::array<std::vector<LumenRing>, 2> rings = {lumen_rings(mesh, state.tissue.wall.x, 0), lumen_rings(mesh, state.tissue.wall.x, 1)};
+  const double whole = t.arc_start + t.rest_length.head(t.n - 1).sum();
+  const std::vector<Stretch> free = between_bites(state.tissue.tracks, whole);
+  double inside = 0.0, arc = t.arc_start;
+  for (int i = 0; i + 1 < t.n; arc += t.rest_length[i++]) {
+    const double middle = arc + 0.5 * t.rest_length[i];
+    if (std::any_of(free.begin(), free.end(), [&](const Stretch& s) { return middle > s.low && middle < s.high; })) continue;
+    const Vec3 q = 0.5 * (t.x.col(i) + t.x.col(i + 1));
+    if (within(rings[0], q) || within(rings[1], q)) inside += t.rest_length[i];
+  }
+  return inside;
+}
+
+JoinTestReport join_test(const Model& model, const State& state, const JoinTestOptions& o) {
+  JoinTestReport report;
+  const VesselMesh& mesh = model.vessel->mesh;
+  report.thread_inside = thread_in_lumen(model, state);
+  World world(std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model));  // no owner: it does not outlive this function
+  world.restore(state);
+  report.sound = let_blood_in(world, o);
+  const Points& x = world.state().tissue.wall.x;
+  BloodOptions blood;
+  blood.pressure = o.pressure;
+  blood.seal = o.seal;
+  const JoinLeak leak = find_leak(mesh, x, 0, 1, kJoinSectors, blood);
+  for (std::size_t k = 0; k < report.flow.size(); ++k) {
+    report.flow[k] = leak.sectors[k].flow;
+    report.gap[k] = leak.sectors[k].gap;
+  }
+  report.leak = leak.flow;
+  report.area = leak.area;
+  std::vector<LumenRing> rings = lumen_rings(mesh, x, 0), second = lumen_rings(mesh, x, 1);
+  const double usual = 0.5 * (lumen_area(rings) + lumen_area(second));
+  rings.insert(rings.end(), second.rbegin(), second.rend());  // the second stump's run from its clamp
+  const Patency lumen = assess_lumen(rings, usual, blood);
+  report.narrowing = lumen.narrowing;
+  report.through = lumen.flow;
+  report.patent = lumen.patent;
+  return report;
+}
+
+}  // namespace filum

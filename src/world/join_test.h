@@ -1,0 +1,43 @@
+#pragma once
+// The join at the end of a task: clamps off, upstream first, and look what comes out.
+//
+// The scene goes on with its instruments as they are (no input); the transmural pressure rises in the first stump, then in the second,
+// and is held. Leak, lumen and flow are those of vessel_leak.h on the walls as they then are.
+//   Thread in the lumen: its length inside the tube through the rings' middles, less what runs from one bite of a stitch to the other.
+// Neglects: that an open end does not hold pressure (the leak of a join that is not closed is that of a vessel kept at this pressure),
+// drops, clotting. Deterministic. Test: join_test_test.
+
+#include <array>
+
+#include "world/model.h"
+#include "world/state.h"
+
+namespace filum {
+
+inline constexpr int kJoinSectors = 8;
+
+struct JoinTestOptions {
+  double pressure = 13332.0;   // [Pa], 100 mmHg
+  double rise = 0.1;           // [s], in each stump
+  double hold = 0.2;           // [s]
+  double seal = 3e-6;          // [m], gaps that close by themselves
+};
+
+struct JoinTestReport {
+  std::array<double, kJoinSectors> flow{};   // [m3/s], from the leak of each sector, from where the vessel's angle is zero
+  std::array<double, kJoinSectors> gap{};    // [m], mean
+  double leak = 0.0;           // [m3/s]
+  double area = 0.0;           // [m2], not sealed
+  double narrowing = 0.0;      // [-], of the lumen near the join, 0 open to 1 closed
+  double through = 0.0;        // [m3/s], Poiseuille flow through both stumps, were the join tight
+  bool patent = false;         // narrowed by less than half
+  double thread_inside = 0.0;  // [m]
+  bool sound = true;           // all numbers finite and the walls stepped without trouble
+};
+
+JoinTestReport join_test(const Model& model, const State& state, const JoinTestOptions& options = {});
+
+/// Length of thread [m] within the lumens, less that between the bites of stitches.
+double thread_in_lumen(const Model& model, const State& state);
+
+}  // namespace filum
