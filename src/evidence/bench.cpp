@@ -12,6 +12,7 @@
 #include "evidence/brain_bench.h"
 #include "evidence/name_choice.h"
 #include "evidence/pulled_knot.h"
+#include "evidence/stitch_bench.h"
 #include "evidence/vessel_bench.h"
 
 namespace filum {
@@ -227,6 +228,8 @@ std::vector<Bench> all_benches() {
     list.push_back({r, [run = run, timer](BenchResult& result, const TaskOpener&) { run(result, timer); }});
   for (auto& [r, run] : vessel_benches())
     list.push_back({r, [run = run, timer](BenchResult& result, const TaskOpener&) { run(result, timer); }});
+  for (const StitchBench& b : stitch_benches())
+    list.push_back({stated(b.name, 0, 0), [b, timer](BenchResult& r, const TaskOpener& open) { run_stitch_bench(b, r, timer, open); }});
   return list;
 }
 

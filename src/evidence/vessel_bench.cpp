@@ -33,24 +33,6 @@ VesselMesh stumps(int around, int along) {
   return make_stumps(s, {});
 }
 
-std::vector<WallLayer> rat_artery() {
-  WallLaw intima, media;
-  intima.kind = WallLaw::Kind::neo_hookean;
-  intima.mu = 30e3;
-  intima.lambda = 2e6;
-  media = intima;
-  media.kind = WallLaw::Kind::fibres;
-  media.k1 = 30e3;
-  media.k2 = 0.84;
-  media.beta = 29.0 * std::numbers::pi / 180.0;
-  WallLaw adventitia = media;
-  adventitia.mu = 5e3;
-  adventitia.k1 = 10e3;
-  adventitia.k2 = 0.71;
-  adventitia.beta = 62.0 * std::numbers::pi / 180.0;
-  return {{"intima", 6e-6, intima}, {"media", 52e-6, media}, {"adventitia", 32e-6, adventitia}};
-}
-
 /// A stitch is drawn to and fro through both edges (three material points through each wall, 400 N/m), forceps press the first stump.
 class Handling {
  public:
@@ -82,7 +64,7 @@ class Handling {
 void bench_stumps(BenchResult& r, const StepTimer& timer, int around, int along) {
   WallOptions options;
   options.dt = 1e-3 * r.dt_ms;
-  VesselWall wall(stumps(around, along), rat_artery(), options);
+  VesselWall wall(stumps(around, along), bench_artery(), options);
   WallState state = wall.first_state();
   Handling handling(wall, state, around, along);
   r.nodes = static_cast<int>(state.x.cols());
@@ -115,6 +97,24 @@ void bench_stumps(BenchResult& r, const StepTimer& timer, int around, int along)
 }
 
 }  // namespace
+
+std::vector<WallLayer> bench_artery() {
+  WallLaw intima, media;
+  intima.kind = WallLaw::Kind::neo_hookean;
+  intima.mu = 30e3;
+  intima.lambda = 2e6;
+  media = intima;
+  media.kind = WallLaw::Kind::fibres;
+  media.k1 = 30e3;
+  media.k2 = 0.84;
+  media.beta = 29.0 * std::numbers::pi / 180.0;
+  WallLaw adventitia = media;
+  adventitia.mu = 5e3;
+  adventitia.k1 = 10e3;
+  adventitia.k2 = 0.71;
+  adventitia.beta = 62.0 * std::numbers::pi / 180.0;
+  return {{"intima", 6e-6, intima}, {"media", 52e-6, media}, {"adventitia", 32e-6, adventitia}};
+}
 
 std::vector<std::pair<BenchResult, TimedBench>> vessel_benches() {
   std::vector<std::pair<BenchResult, TimedBench>> list;

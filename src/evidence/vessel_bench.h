@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "evidence/brain_bench.h"
+#include "physics/vessel_wall_element.h"
 
 namespace filum {
 
+/// Layers of a rat femoral artery (models/vessel/rat-femoral-artery.yaml).
+std::vector<WallLayer> bench_artery();
 std::vector<std::pair<BenchResult, TimedBench>> vessel_benches();
 
 }  // namespace filum

@@ -73,6 +73,7 @@ void read_stumps(const std::string& root, const YamlNode& node, Model& m, Vessel
   v.cut_along = -Vec3::UnitX();
   v.lumen = true;
   v.mesh = make_stumps(s, v.clamp);
+  v.shape = s;
   for (Eigen::Index i = 0; i < v.mesh.nodes.cols(); ++i) {
     const Vec3 r = v.mesh.nodes.col(i) - v.clamp.X_WB.p;
     v.radius = std::max(v.radius, (r - r.y() * Vec3::UnitY()).norm());

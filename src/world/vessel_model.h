@@ -20,6 +20,7 @@ struct VesselModel {
   Vec3 cut_along = Vec3::UnitX();     // unit, direction of the cut at rest; of a vessel: where its angle is zero
   bool lumen = false;                 // two stumps in a double clamp
   DoubleClamp clamp;                  // of these
+  TubeShape shape;                    // of each
   double radius = 0.0;                // [m], outer, as first made
 };
 
