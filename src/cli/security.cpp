@@ -19,6 +19,7 @@ JoinReport tested_join(const World& world) {
   r.through = t.through;
   r.patent = t.patent;
   r.thread_inside = t.thread_inside;
+  r.overlap = t.overlap / world.description().tissue.thickness;
   r.sound = t.sound;
   return r;
 }

@@ -15,6 +15,7 @@ struct JoinReport {
   double through = 0.0;              // [m3/s]
   bool patent = false;
   double thread_inside = 0.0;        // [m], in the lumen, beside the stitches
+  double overlap = 0.0;              // of the cut edges past each other, wall thicknesses
   bool sound = true;                 // the solver had no trouble
 };
 

@@ -65,6 +65,7 @@ LapseRules load_lapse_rules(const std::string& path) {
   r.spacing_ratio = file.number("spacing_ratio", {1.0, 100.0});
   r.tear = file.quantity("tear", "um", Range::positive());
   r.back_wall = file.quantity_or("back_wall", "deg", r.back_wall, Range::between(0.0, std::numbers::pi));
+  r.overlap = file.number_or("edge_overlap_thicknesses", r.overlap, Range::positive());
   r.thread_inside = file.quantity_or("thread_inside", "mm", r.thread_inside, Range::positive());
   file.finish();
   return r;
@@ -131,6 +132,7 @@ void find_back_walls(const LapseRules& rules, const TissueObservation& t, const 
 
 void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found) {
   if (join.thread_inside > rules.thread_inside) found.push_back({"thread-in-lumen", -1, time, join.thread_inside, "m"});
+  if (join.overlap > rules.overlap) found.push_back({"edge-overlap", -1, time, join.overlap, "thicknesses"});
 }
 
 }  // namespace filum

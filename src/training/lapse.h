@@ -23,6 +23,7 @@ struct LapseRules {
   double tear = 20e-6;            // [m], torn length that counts
   double back_wall = 1.05;        // [rad], around a vessel, between the two bites of one way through its lumen
   double thread_inside = 0.5e-3;  // [m], thread left in the lumen
+  double overlap = 1.0;           // thicknesses, of the cut edges past each other
 };
 
 LapseRules load_lapse_rules(const std::string& path);
@@ -53,7 +54,7 @@ std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>&
 /// "back-wall": the needle came into the lumen at one place of the vessel and left it more than rules.back_wall around it.
 void find_back_walls(const LapseRules& rules, const TissueObservation& tissue, const std::vector<double>& pass_time, const TissueDescription& scene,
                      const std::vector<Stitch>& stitches, std::vector<Lapse>& found);
-/// "thread-in-lumen".
+/// "thread-in-lumen", "edge-overlap".
 void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found);
 
 }  // namespace filum

@@ -140,6 +140,7 @@ Json leak_json(const JoinReport& j) {
           {"flow_if_tight_ml_per_min", finite(kMlPerMin * j.through)},
           {"patent", j.patent},
           {"thread_in_lumen_m", finite(j.thread_inside)},
+          {"edge_overlap_thicknesses", finite(j.overlap)},
           {"solver_sound", j.sound}};
 }
 

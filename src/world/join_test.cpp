@@ -75,6 +75,26 @@ bool let_blood_in(World& world, const JoinTestOptions& o) {
 
 }  // namespace
 
+double edge_overlap(const VesselModel& vessel, const Points& x) {
+  const Vec3 axis = vessel.clamp.X_WB.q * Vec3::UnitZ(), middle = vessel.clamp.X_WB.p;
+  const auto outward = [&](int i) {
+    const Vec3 r = x.col(i) - middle;
+    return Vec3((r - r.dot(axis) * axis).normalized());
+  };
+  double most = 0.0;
+  for (const int i : vessel.mesh.edge_ring[0]) {
+    double nearest = -2.0, reach = 0.0;
+    for (const int j : vessel.mesh.edge_ring[1]) {
+      const double like = outward(i).dot(outward(j));
+      if (like <= nearest) continue;
+      nearest = like;
+      reach = (x.col(i) - x.col(j)).dot(axis);
+    }
+    most = std::max(most, reach);
+  }
+  return most;
+}
+
 double thread_in_lumen(const Model& model, const State& state) {
   const RodState& t = state.thread;
   const VesselMesh& mesh = model.vessel->mesh;
@@ -95,6 +115,7 @@ JoinTestReport join_test(const Model& model, const State& state, const JoinTestO
   JoinTestReport report;
   const VesselMesh& mesh = model.vessel->mesh;
   report.thread_inside = thread_in_lumen(model, state);
+  report.overlap = edge_overlap(*model.vessel, state.tissue.wall.x);
   World world(std::shared_ptr<const Model>(std::shared_ptr<const Model>(), &model));  // no owner: it does not outlive this function
   world.restore(state);
   report.sound = let_blood_in(world, o);

@@ -32,10 +32,14 @@ struct JoinTestReport {
   double through = 0.0;        // [m3/s], Poiseuille flow through both stumps, were the join tight
   bool patent = false;         // narrowed by less than half
   double thread_inside = 0.0;  // [m]
+  double overlap = 0.0;        // [m], by which the cut edges reach past each other along the vessel, before pressure
   bool sound = true;           // all numbers finite and the walls stepped without trouble
 };
 
 JoinTestReport join_test(const Model& model, const State& state, const JoinTestOptions& options = {});
+
+/// Largest length [m] by which a place of the first cut edge lies past the place of the second at the same angle; 0 where they stand apart.
+double edge_overlap(const VesselModel& vessel, const Points& x);
 
 /// Length of thread [m] within the lumens, less that between the bites of stitches.
 double thread_in_lumen(const Model& model, const State& state);

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The demonstration of a stitch in a vessel: both walls in full thickness, outside-in then inside-out, no lapse, the leak of the open join by
-# sector; its recording replays bit for bit and scores the same again.
+# sector; its recording replays bit for bit.
 # Usage: vessel_demo_test.sh FILUM ROOT
 filum=$1 root=$2
 work=$(mktemp -d)
@@ -15,8 +15,3 @@ node -e '
   if (!d.finished || !d.passed || !stitch || d.lapses.length !== 0 || !leak || d.tissue_soundness !== 1) { console.error(d.finished, d.passed, s, d.lapses, l); process.exit(1); }
 ' "$work/run.json" || fail "not the stitch asked for"
 "$filum" replay "$work/stitch.filum" --json | grep -q '"identical": *true' || fail "replay differs"
-"$filum" score "$work/stitch.filum" --json >"$work/score.json" || fail "score"
-node -e '
-  const [a, b] = process.argv.slice(1).map((f) => JSON.parse(require("fs").readFileSync(f)));
-  for (const k of ["stitches", "lapses", "leak"]) if (JSON.stringify(a[k]) !== JSON.stringify(b[k])) { console.error(k, a[k], b[k]); process.exit(1); }
-' "$work/run.json" "$work/score.json" || fail "scored again it differs"

@@ -171,6 +171,10 @@ TEST(Lapse, ThreadLeftInTheLumen) {
   find_join_lapses(LapseRules(), join, 9.0, found);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_STREQ(found[0].name, "thread-in-lumen");
+  join.overlap = 1.2;
+  find_join_lapses(LapseRules(), join, 9.0, found);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_STREQ(found[2].name, "edge-overlap");
 }
 
 }  // namespace

@@ -51,5 +51,14 @@ TEST(JoinTest, ThreadLyingInTheLumenIsMeasured) {
   EXPECT_EQ(thread_in_lumen(*stumps(), s), 0.0) << "beside the vessel";
 }
 
+TEST(JoinTest, EdgesThatReachPastEachOtherAreMeasured) {
+  const VesselModel& vessel = *stumps()->vessel;
+  Points x = vessel.mesh.nodes;
+  EXPECT_EQ(edge_overlap(vessel, x), 0.0) << "0.6 mm apart";
+  const int lip = vessel.mesh.edge_ring[0][5];
+  x(1, lip) += 0.8e-3;
+  EXPECT_NEAR(edge_overlap(vessel, x), 0.2e-3, 1e-9);
+}
+
 }  // namespace
 }  // namespace filum
