@@ -42,7 +42,7 @@ Vec3 push_at(double time, double deepest) { return {2e-3 * std::sin(2.0 * time),
 Eigen::SparseMatrix<double> effective_matrix(const LinearFem& fem) {
   const FemOptions& o = fem.options();
   std::vector<Eigen::Triplet<double>> entries;
-  const BlockMatrix<double>& K = fem.stiffness();
+  const BlockMatrix& K = fem.stiffness();
   for (int i = 0; i < K.n(); ++i)
     for (int k = K.begins()[static_cast<std::size_t>(i)]; k < K.begins()[static_cast<std::size_t>(i) + 1]; ++k) {
       const int j = K.columns()[static_cast<std::size_t>(k)];

@@ -53,13 +53,12 @@ void check_material(const FemMaterial& m, const std::string& file) {
   if (!(std::isfinite(m.density) && m.density > 0.0)) throw InputError(file, "density", std::to_string(m.density), "a density above 0 kg/m3");
 }
 
-/// The matrix in the precision asked for, and the systems of a step and of rest that stand on it.
+/// The systems of a step, in the precision asked for, and of rest.
 struct LinearFem::Solvers {
-  BlockMatrix<float> narrow;
-  FemSystem<float> narrow_step;
+  FemSystem<float> narrow;
   FemSystem<double> step, rest;
-  explicit Solvers(const BlockMatrix<double>& K, bool single)
-      : narrow(single ? BlockMatrix<float>(K) : BlockMatrix<float>()), narrow_step(narrow), step(K), rest(K) {}
+  bool rest_is_set = false;
+  explicit Solvers(const BlockMatrix& K) : narrow(K), step(K), rest(K) {}
 };
 
 LinearFem::LinearFem(TetMesh mesh, std::vector<FemMaterial> regions, const FemOptions& options, const std::string& file)
@@ -71,7 +70,7 @@ LinearFem::LinearFem(TetMesh mesh, std::vector<FemMaterial> regions, const FemOp
       throw InputError(file, "element " + std::to_string(e), "region " + std::to_string(mesh_.region_of(e)), "a region with a material");
   check_relaxation(options.relaxation, file);
   if (!(options.dt > 0.0)) throw InputError(file, "dt", std::to_string(options.dt), "a time step above 0 s");
-  K_ = BlockMatrix<double>(neighbours(mesh_, options.averaged_pressure));
+  K_ = BlockMatrix(neighbours(mesh_, options.averaged_pressure));
   held_.assign(static_cast<std::size_t>(mesh_.n_nodes()), 0);
   mass_ = Eigen::VectorXd::Zero(mesh_.n_nodes());
   for (int e = 0; e < mesh_.n_tets(); ++e)
@@ -139,12 +138,12 @@ void LinearFem::add_averaged_pressure(const std::vector<char>& removed) {
 }
 
 void LinearFem::assemble(const std::vector<char>& removed) {
-  K_ = BlockMatrix<double>(neighbours(mesh_, options_.averaged_pressure));
+  K_ = BlockMatrix(neighbours(mesh_, options_.averaged_pressure));
   for (int e = 0; e < mesh_.n_tets(); ++e)
     if (!removed[static_cast<std::size_t>(e)]) add_element(e, 1.0);
   if (options_.averaged_pressure) add_averaged_pressure(removed);
   removed_ = removed;
-  solvers_ = std::make_unique<Solvers>(K_, options_.single_precision);
+  solvers_ = std::make_unique<Solvers>(K_);
   set_systems();
 }
 
@@ -152,9 +151,9 @@ void LinearFem::set_systems() {
   const double dt = options_.dt;
   const double scale = 1.0 + 2.0 / dt * options_.stiffness_damping;
   const Eigen::VectorXd inertia = (4.0 / (dt * dt) + 2.0 / dt * options_.mass_damping) * mass_;
-  if (options_.single_precision) solvers_->narrow_step.set(scale, inertia, held_);
+  if (options_.single_precision) solvers_->narrow.set(scale, inertia, held_);
   else solvers_->step.set(scale, inertia, held_);
-  solvers_->rest.set(1.0, Eigen::VectorXd::Zero(mesh_.n_nodes()), held_);
+  solvers_->rest_is_set = false;
 }
 
 void LinearFem::hold(std::span<const int> nodes) {
@@ -173,7 +172,7 @@ FemState LinearFem::rest() const {
 FemSummary LinearFem::solve(FemState& s, std::span<MovedNode> moved, bool dynamic) noexcept {
   for (MovedNode& m : moved) m.target -= s.u.col(m.node);  // targets of the change
   const FemSummary summary = !dynamic                    ? solvers_->rest.solve(right_, change_, moved, options_.solver)
-                             : options_.single_precision ? solvers_->narrow_step.solve(right_, change_, moved, options_.solver)
+                             : options_.single_precision ? solvers_->narrow.solve(right_, change_, moved, options_.solver)
                                                          : solvers_->step.solve(right_, change_, moved, options_.solver);
   for (MovedNode& m : moved) m.target += s.u.col(m.node);
   return summary;
@@ -187,8 +186,10 @@ FemSummary LinearFem::step(FemState& s, std::span<MovedNode> moved, const Points
     w += (1.0 - std::exp(-dt / options_.relaxation[k].time)) * (s.u - w);
     work_.topRows<3>() += options_.relaxation[k].share * w;
   }
-  if (options_.single_precision) solvers_->narrow.times(work_, right_);
-  else K_.times(work_, right_);
+  if (options_.single_precision) solvers_->narrow.stiffness_times(work_, right_);
+  else solvers_->step.stiffness_times(work_, right_);
+  for (const MovedNode& m : moved)
+    if (held_[static_cast<std::size_t>(m.node)]) right_.col(m.node).head<3>() = K_.row_times(m.node, work_);
   for (int i = 0; i < mesh_.n_nodes(); ++i) {
     right_.col(i).head<3>() += mass_[i] * ((4.0 / dt + alpha) * s.v.col(i) + s.a.col(i));
     if (loads != nullptr) right_.col(i).head<3>() += loads->col(i);
@@ -212,11 +213,15 @@ FemSummary LinearFem::step(FemState& s, std::span<MovedNode> moved, const Points
     const double share = m.prescribed ? 1.0 : hold / (hold + own);
     s.v.col(m.node) += share * (change_.col(m.node).head<3>() / dt - s.v.col(m.node));
     s.a.col(m.node) *= 1.0 - share;
+    const double excess = s.v.col(m.node).dot(m.outward) - m.speed;
+    if (excess > 0.0) s.v.col(m.node) -= share * excess * m.outward;
   }
   return summary;
 }
 
 FemSummary LinearFem::equilibrium(FemState& s, std::span<MovedNode> moved, const Points* loads) noexcept {
+  if (!solvers_->rest_is_set) solvers_->rest.set(1.0, Eigen::VectorXd::Zero(mesh_.n_nodes()), held_);
+  solvers_->rest_is_set = true;
   work_.topRows<3>() = -s.u;
   K_.times(work_, right_);
   if (loads != nullptr) right_.topRows<3>() += *loads;

@@ -10,7 +10,8 @@
 // u_1 - u, which is the same system with less cancellation: right side f + M ((4/dt + a) u' + u'') + K (b u' - u).
 // Nodes that a rigid tool moves are given by MovedNode; the force that moves them is the haptic force (paper, section 4).
 // They take u' = (u_1 - u)/dt and u'' = 0, in the measure that the tool decides: the trapezoidal rule would let the
-// velocity of a prescribed node ring for ever.
+// velocity of a prescribed node ring for ever. What only pushes leaves a node no faster than itself: the way out of a blade
+// that a node has been found behind is no velocity, else it flies off, is caught behind the blade again, and so for ever.
 // Symbols: E [Pa], nu [-], rho [kg/m3], a [1/s], b [s].  Valid: strains below about 10 %, rotations below about 10 degrees
 // (a linear element that turns pushes back), nu < 0.5. Plain linear tetrahedra lock: nu = 0.45 bends 39 % too stiffly with
 // 4 elements through the thickness; `averaged_pressure` takes the volume change averaged over the elements about each node
@@ -92,7 +93,7 @@ class LinearFem {
   const TetMesh& mesh() const noexcept { return mesh_; }
   const FemOptions& options() const noexcept { return options_; }
   void set_solver(const FemSolverOptions& o) { options_.solver = o; }
-  const BlockMatrix<double>& stiffness() const noexcept { return K_; }
+  const BlockMatrix& stiffness() const noexcept { return K_; }
   const Eigen::VectorXd& mass() const noexcept { return mass_; }  // [kg], of each node
   const std::vector<char>& held() const noexcept { return held_; }
 
@@ -112,7 +113,7 @@ class LinearFem {
   TetMesh mesh_;
   std::vector<FemMaterial> regions_;
   FemOptions options_;
-  BlockMatrix<double> K_;
+  BlockMatrix K_;
   Eigen::VectorXd mass_;
   std::vector<char> held_, removed_;
   Columns4 right_, change_, work_;

@@ -1,7 +1,6 @@
 #pragma once
-// Symmetric sparse matrix of 3x3 blocks in rows, and the two sweeps that Gauss-Seidel is made of. Vectors are 4 x n with a
-// zero fourth row, so that a block column is one vector operation. `T` is the number the blocks are stored in (float halves
-// the memory that a sweep reads); sums are always in double.
+// Symmetric sparse matrix of 3x3 blocks in rows: what the elements are assembled into. Vectors are 4 x n with a zero fourth
+// row, so that a block column is one vector operation.
 
 #include <vector>
 
@@ -11,13 +10,10 @@ namespace filum {
 
 using Columns4 = Eigen::Matrix4Xd;  // 3 x n padded by a row of zeros
 
-template <class T>
 class BlockMatrix {
  public:
   /// `neighbours` of each row: sorted columns, the diagonal among them.
   explicit BlockMatrix(const std::vector<std::vector<int>>& neighbours = {});
-  template <class S>
-  explicit BlockMatrix(const BlockMatrix<S>& other);
 
   int n() const noexcept { return static_cast<int>(diagonal_.size()); }
   std::size_t n_blocks() const noexcept { return column_.size(); }
@@ -26,22 +22,17 @@ class BlockMatrix {
   Mat3 diagonal(int row) const noexcept { return at(static_cast<std::size_t>(diagonal_[static_cast<std::size_t>(row)])); }
   const std::vector<int>& begins() const noexcept { return begin_; }
   const std::vector<int>& columns() const noexcept { return column_; }
-  Mat3 at(std::size_t k) const noexcept;
+  Mat3 at(std::size_t k) const noexcept { return value_[k]; }
 
-  /// Row `i` of the matrix times x; `low`, `high`: only the columns before, from (with it) and after the diagonal.
+  /// Row `i` of the matrix times x.
   Vec3 row_times(int i, const Columns4& x) const noexcept;
-  Vec3 row_times_low(int i, const Columns4& x) const noexcept;
-  Vec3 row_times_high(int i, const Columns4& x) const noexcept;
   void times(const Columns4& x, Columns4& y) const noexcept;
 
  private:
-  template <class>
-  friend class BlockMatrix;
   std::size_t find(int row, int column) const noexcept;
-  Vec3 sum(int from, int to, const Columns4& x) const noexcept;
 
   std::vector<int> begin_, column_, diagonal_;
-  std::vector<T> value_;  // 12 a block: three columns of three and a zero
+  std::vector<Mat3> value_;
 };
 
 }  // namespace filum

@@ -1,5 +1,6 @@
 #include "physics/linear_fem_solver.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace filum {
@@ -7,108 +8,222 @@ namespace {
 
 constexpr double kNothing = 1e-15;  // [N], forces below this are rest
 
-/// Inverse of a block; zero where there is nothing to invert (a node that has lost its elements).
-Mat3 inverse_or_zero(const Mat3& m) noexcept {
+/// A block that can be divided by: not that of a node that has lost its elements.
+bool regular(const Mat3& m) noexcept {
   const double size = m.trace();
-  if (!(size > 0.0) || !(m.determinant() > 1e-12 * size * size * size / 27.0)) return Mat3::Zero();
-  return m.inverse();
+  return size > 0.0 && m.determinant() > 1e-12 * size * size * size / 27.0;
+}
+
+template <class T>
+std::array<T, 12> packed(const Mat3& m) noexcept {
+  std::array<T, 12> a{};
+  for (std::size_t k = 0; k < 9; ++k) a[k] = static_cast<T>(m.data()[k]);
+  return a;
+}
+
+template <class V>
+auto dot3(const V& a, const V& b) noexcept {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Vec3 three(const double* v) noexcept { return {v[0], v[1], v[2]}; }
+Eigen::Map<Vec3> into(double* v) noexcept { return Eigen::Map<Vec3>(v); }
+
+/// Nodes by breadth first from `from`, those of few neighbours first; marks what it reaches in `seen`.
+void reach(const BlockMatrix& K, int from, std::vector<char>& seen, std::vector<int>& list) {
+  const auto begin = [&](int i) { return K.begins()[static_cast<std::size_t>(i)]; };
+  std::size_t next = list.size();
+  seen[static_cast<std::size_t>(from)] = 1;
+  list.push_back(from);
+  for (; next < list.size(); ++next) {
+    const std::size_t first = list.size();
+    for (int k = begin(list[next]); k < begin(list[next] + 1); ++k) {
+      const int j = K.columns()[static_cast<std::size_t>(k)];
+      if (seen[static_cast<std::size_t>(j)]) continue;
+      seen[static_cast<std::size_t>(j)] = 1;
+      list.push_back(j);
+    }
+    std::stable_sort(list.begin() + static_cast<std::ptrdiff_t>(first), list.end(), [&](int a, int b) { return begin(a + 1) - begin(a) < begin(b + 1) - begin(b); });
+  }
 }
 
 }  // namespace
 
 template <class T>
-FemSystem<T>::FemSystem(const BlockMatrix<T>& K) : K_(K), mass_(Eigen::VectorXd::Zero(K.n())), held_(static_cast<std::size_t>(K.n()), 0) {
-  for (Columns4* v : {&r_, &p_, &w_, &t_, &x_}) *v = Columns4::Zero(4, K.n());
-  const auto n = static_cast<std::size_t>(K.n());
-  diagonal_.resize(n);
-  inverse_.resize(n);
-  support_of_.assign(n, -1);
-  for (auto* v : {&saved_diagonal_, &saved_inverse_, &support_stiffness_}) v->reserve(n);
-  support_.reserve(n);
+void FemSystem<T>::order(const std::vector<char>& held) {
+  const auto n = static_cast<std::size_t>(K_.n());
+  std::vector<char> out(n);
+  for (std::size_t i = 0; i < n; ++i) out[i] = held[i] || !regular(scale_ * K_.diagonal(static_cast<int>(i)) + mass_[static_cast<Eigen::Index>(i)] * Mat3::Identity());
+  std::vector<char> seen = out;
+  std::vector<int> list, trial;
+  for (int i = 0; i < K_.n(); ++i) {
+    if (seen[static_cast<std::size_t>(i)]) continue;
+    std::vector<char> again = seen;
+    trial.clear();
+    reach(K_, i, again, trial);
+    reach(K_, trial.back(), seen, list);  // from one end of this part
+  }
+  if (!deal(list, kGroup)) deal(list, 1);
+}
+
+/// Deals the list out to groups from so many stretches of it. False if two rows of a group would meet.
+template <class T>
+bool FemSystem<T>::deal(const std::vector<int>& list, int streams) {
+  const std::size_t stretch = (list.size() + static_cast<std::size_t>(streams) - 1) / static_cast<std::size_t>(streams);
+  node_of_.assign(stretch * kGroup, -1);
+  position_of_.assign(static_cast<std::size_t>(K_.n()), -1);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::size_t p = kGroup * (k % stretch) + k / stretch;
+    node_of_[p] = list[k];
+    position_of_[static_cast<std::size_t>(list[k])] = static_cast<int>(p);
+  }
+  for (const int i : list)
+    for (int k = K_.begins()[static_cast<std::size_t>(i)]; k < K_.begins()[static_cast<std::size_t>(i) + 1]; ++k) {
+      const int j = K_.columns()[static_cast<std::size_t>(k)], p = position_of_[static_cast<std::size_t>(i)], q = position_of_[static_cast<std::size_t>(j)];
+      if (j != i && q >= 0 && p / kGroup == q / kGroup) return false;
+    }
+  return true;
+}
+
+template <class T>
+void FemSystem<T>::fill() {
+  root_.assign(node_of_.size(), Mat3::Identity());
+  root_inverse_ = root_;
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    if (node_of_[p] < 0) continue;
+    root_[p] = (scale_ * K_.diagonal(node_of_[p]) + mass_[node_of_[p]] * Mat3::Identity()).llt().matrixL();
+    root_inverse_[p] = root_[p].inverse();
+  }
+  const auto group = [&](TriangleRows<T>& to, int g, bool low) {
+    std::array<typename TriangleRows<T>::Row, kGroup> rows;
+    for (int l = 0; l < kGroup; ++l) {
+      const int p = kGroup * g + l, i = node_of_[static_cast<std::size_t>(p)];
+      for (int k = i < 0 ? 0 : K_.begins()[static_cast<std::size_t>(i)]; k < (i < 0 ? 0 : K_.begins()[static_cast<std::size_t>(i) + 1]); ++k) {
+        const int q = position_of_[static_cast<std::size_t>(K_.columns()[static_cast<std::size_t>(k)])];
+        if (q < 0 || q == p || (q < p) != low) continue;
+        rows[static_cast<std::size_t>(l)].emplace_back(
+            q, scale_ * root_inverse_[static_cast<std::size_t>(p)] * K_.at(static_cast<std::size_t>(k)) * root_inverse_[static_cast<std::size_t>(q)].transpose());
+      }
+    }
+    to.add(rows);
+  };
+  low_.clear();
+  high_.clear();
+  for (int g = 0; g < groups(); ++g) group(low_, g, true);
+  for (int g = groups() - 1; g >= 0; --g) group(high_, g, false);
+  low_.finish();
+  high_.finish();
 }
 
 template <class T>
 void FemSystem<T>::set(double scale, const Eigen::VectorXd& mass, const std::vector<char>& held) {
   scale_ = scale;
   mass_ = mass;
-  held_ = held;
-  for (int i = 0; i < K_.n(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    diagonal_[k] = scale_ * K_.diagonal(i) + mass_[i] * Mat3::Identity();
-    inverse_[k] = held_[k] ? Mat3::Zero() : inverse_or_zero(diagonal_[k]);
+  order(held);
+  fill();
+  for (auto* v : {&b_, &u_}) v->assign(4 * node_of_.size(), 0.0);
+  for (auto* v : {&r_, &p_, &q_, &t_, &x_}) v->assign(4 * node_of_.size(), T(0));
+  special_.assign(node_of_.size(), -1);
+  moved_.clear();
+  moved_.reserve(node_of_.size());
+}
+
+template <class T>
+void FemSystem<T>::gather(const Columns4& b, const Columns4& u) noexcept {
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    if (node_of_[p] < 0) continue;
+    into(&b_[4 * p]) = root_inverse_[p] * b.col(node_of_[p]).template head<3>();
+    into(&u_[4 * p]) = root_[p].transpose() * u.col(node_of_[p]).template head<3>();
   }
 }
 
 template <class T>
 void FemSystem<T>::place(std::span<const MovedNode> moved, Columns4& u) noexcept {
-  saved_diagonal_.clear();
-  saved_inverse_.clear();
-  support_.clear();
-  support_stiffness_.clear();
+  moved_.clear();
   for (const MovedNode& m : moved) {
-    const auto i = static_cast<std::size_t>(m.node);
-    saved_diagonal_.push_back(diagonal_[i]);
-    saved_inverse_.push_back(inverse_[i]);
-    support_of_[i] = static_cast<int>(support_.size());
-    support_.push_back(m.prescribed ? Vec3::Zero() : Vec3(m.stiffness * m.target));
-    support_stiffness_.push_back(m.prescribed ? Mat3::Zero() : m.stiffness);
-    if (held_[i]) continue;
+    const int at = position_of_[static_cast<std::size_t>(m.node)];
+    if (at < 0) continue;
+    const auto p = static_cast<std::size_t>(at);
+    if (special_[p] < 0) {
+      special_[p] = static_cast<int>(moved_.size());
+      moved_.emplace_back();
+      moved_.back().position = at;
+    }
+    Moved& s = moved_[static_cast<std::size_t>(special_[p])];
     if (m.prescribed) {
-      inverse_[i].setZero();
+      s.prescribed = true;
       u.col(m.node).template head<3>() = m.target;
+      into(&u_[4 * p]) = root_[p].transpose() * m.target;
     } else {
-      diagonal_[i] += m.stiffness;
-      inverse_[i] = inverse_or_zero(diagonal_[i]);
+      const Mat3 scaled = root_inverse_[p] * m.stiffness * root_inverse_[p].transpose();
+      s.spring += scaled;
+      s.block += scaled;
+      const Vec3 pull = root_inverse_[p] * (m.stiffness * m.target);
+      s.pull += pull;
+      into(&b_[4 * p]) += pull;
     }
+    s.diagonal = packed<T>(s.block);
+    s.inverse = packed<T>(s.prescribed ? Mat3(Mat3::Zero()) : Mat3(s.block.inverse()));
   }
 }
 
 template <class T>
-void FemSystem<T>::lift(std::span<const MovedNode> moved) noexcept {
-  for (std::size_t k = moved.size(); k-- > 0;) {  // backwards: a node named twice gets its own values again
-    const auto i = static_cast<std::size_t>(moved[k].node);
-    diagonal_[i] = saved_diagonal_[k];
-    inverse_[i] = saved_inverse_[k];
-    support_of_[i] = -1;
+void FemSystem<T>::lift() noexcept {
+  for (const Moved& m : moved_) special_[static_cast<std::size_t>(m.position)] = -1;
+}
+
+template <class T>
+void FemSystem<T>::product(int g, const double* x, Vec3* rows) const noexcept {
+  Four<double> low[kGroup], high[kGroup];
+  low_.times(g, x, low);
+  high_.times(groups() - 1 - g, x, high);
+  for (int l = 0; l < kGroup; ++l) {
+    const Four<double> sum = low[l] + high[l] + load_four(x + 4 * static_cast<std::ptrdiff_t>(kGroup * g + l));
+    rows[l] = {sum[0], sum[1], sum[2]};
   }
 }
 
-/// Force that is missing for balance at a node, without regard to what holds it.
+/// |b| and the forces that the movers would give at the first guess.
 template <class T>
-Vec3 FemSystem<T>::unbalanced(int i, const Columns4& b, const Columns4& u) const noexcept {
-  return b.col(i).template head<3>() - scale_ * K_.row_times(i, u) - mass_[i] * u.col(i).template head<3>();
-}
-
-template <class T>
-double FemSystem<T>::scale_of(const Columns4& b, const Columns4& u, std::span<const MovedNode> moved) const noexcept {
-  double sum = b.squaredNorm();
-  for (const MovedNode& m : moved) {
-    Vec3 force = unbalanced(m.node, b, u);
-    if (!m.prescribed) {  // what the mover gives once this node alone has followed it
-      const Vec3 wanted = m.target - u.col(m.node).template head<3>();
-      force += m.stiffness * (wanted - inverse_[static_cast<std::size_t>(m.node)] * (m.stiffness * wanted));
+double FemSystem<T>::scale_of() const noexcept {
+  double sum = 0.0;
+  Vec3 rows[kGroup];
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    Vec3 b = three(&b_[4 * p]);
+    if (const int s = special_[p]; s >= 0) {
+      const Moved& m = moved_[static_cast<std::size_t>(s)];
+      b -= m.pull;
+      product(static_cast<int>(p) / kGroup, u_.data(), rows);
+      Vec3 force = b - rows[p % kGroup];
+      if (!m.prescribed) {  // what the mover gives once this node alone has followed it
+        const Vec3 wanted = m.pull - m.spring * three(&u_[4 * p]);
+        force += wanted - m.spring * (m.block.inverse() * wanted);
+      }
+      sum += (root_[p] * force).squaredNorm();
     }
-    sum += force.squaredNorm();
+    sum += (root_[p] * b).squaredNorm();
   }
   return std::sqrt(sum);
 }
 
-/// Residual into r_; its norm over free nodes.
+/// Residual into r_, scaled; the norm of the true one over the nodes that are not prescribed.
 template <class T>
-double FemSystem<T>::residual(const Columns4& b, const Columns4& u, double& largest) noexcept {
+double FemSystem<T>::residual(double& largest) noexcept {
   double sum = 0.0;
   largest = 0.0;
-  for (int i = 0; i < K_.n(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    Vec3 r = Vec3::Zero();
-    if (inverse_[k](0, 0) != 0.0) {
-      r = unbalanced(i, b, u);
-      if (const int s = support_of_[k]; s >= 0)
-        r += support_[static_cast<std::size_t>(s)] - support_stiffness_[static_cast<std::size_t>(s)] * u.col(i).template head<3>();
+  Vec3 rows[kGroup];
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    if (p % kGroup == 0) product(static_cast<int>(p) / kGroup, u_.data(), rows);
+    Vec3 r = three(&b_[4 * p]) - rows[p % kGroup];
+    if (const int s = special_[p]; s >= 0) {
+      const Moved& m = moved_[static_cast<std::size_t>(s)];
+      if (m.prescribed) r.setZero();
+      else r -= m.spring * three(&u_[4 * p]);
     }
-    r_.col(i).template head<3>() = r;
-    sum += r.squaredNorm();
-    largest = std::max(largest, r.squaredNorm());
+    for (int c = 0; c < 3; ++c) r_[4 * p + static_cast<std::size_t>(c)] = static_cast<T>(r[c]);
+    const double size = (root_[p] * r).squaredNorm();
+    sum += size;
+    largest = std::max(largest, size);
   }
   largest = std::sqrt(largest);
   return std::sqrt(sum);
@@ -116,121 +231,228 @@ double FemSystem<T>::residual(const Columns4& b, const Columns4& u, double& larg
 
 /// One sweep; returns the norm of the forces that were unbalanced when each node's turn came.
 template <class T>
-double FemSystem<T>::sweep(const Columns4& b, Columns4& u, double w, bool back) noexcept {
+double FemSystem<T>::sweep(double w, bool back) noexcept {
   double sum = 0.0;
-  for (int n = K_.n(), s = 0; s < n; ++s) {
-    const int i = back ? n - 1 - s : s;
-    const auto k = static_cast<std::size_t>(i);
-    if (inverse_[k](0, 0) == 0.0) continue;
-    Vec3 r = unbalanced(i, b, u);
-    if (const int h = support_of_[k]; h >= 0)
-      r += support_[static_cast<std::size_t>(h)] - support_stiffness_[static_cast<std::size_t>(h)] * u.col(i).template head<3>();
-    sum += r.squaredNorm();
-    u.col(i).template head<3>() += w * (inverse_[k] * r);
+  Vec3 rows[kGroup];
+  for (int k = 0; k < groups(); ++k) {
+    const int g = back ? groups() - 1 - k : k;
+    product(g, u_.data(), rows);
+    for (int l = 0; l < kGroup; ++l) {
+      const auto p = static_cast<std::size_t>(kGroup * g + l);
+      Vec3 r = three(&b_[4 * p]) - rows[l], step = r;
+      if (const int s = special_[p]; s >= 0) {
+        const Moved& m = moved_[static_cast<std::size_t>(s)];
+        if (m.prescribed) continue;
+        r -= m.spring * three(&u_[4 * p]);
+        step = m.block.inverse() * r;
+      }
+      sum += (root_[p] * r).squaredNorm();
+      into(&u_[4 * p]) += w * step;
+    }
   }
   return std::sqrt(sum);
 }
 
 template <class T>
-int FemSystem<T>::gauss_seidel(const Columns4& b, Columns4& u, const FemSolverOptions& o, double scale) noexcept {
-  double largest = 0.0;
-  for (int k = 1; k <= o.max_iterations; ++k) {
-    const double seen = sweep(b, u, o.relaxation, o.symmetric && k % 2 == 0);
-    if (!(seen > 2.0 * o.relative * scale) && !(residual(b, u, largest) > o.relative * scale)) return k;
-  }
-  return o.max_iterations;
-}
-
-template <class T>
-void FemSystem<T>::forward(const Columns4& r, Columns4& y) const noexcept {
-  for (int i = 0; i < K_.n(); ++i)
-    y.col(i).template head<3>() = inverse_[static_cast<std::size_t>(i)] * (r.col(i).template head<3>() - scale_ * K_.row_times_low(i, y));
-}
-
-template <class T>
-void FemSystem<T>::backward(const Columns4& r, Columns4& y) const noexcept {
-  for (int i = K_.n() - 1; i >= 0; --i)
-    y.col(i).template head<3>() = inverse_[static_cast<std::size_t>(i)] * (r.col(i).template head<3>() - scale_ * K_.row_times_high(i, y));
-}
-
-template <class T>
-void FemSystem<T>::apply(const Columns4& v, Columns4& w) noexcept {
-  backward(v, t_);
-  for (int i = 0; i < K_.n(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const Vec3 t = t_.col(i).template head<3>();
-    const Vec3 right = v.col(i).template head<3>() - diagonal_[k] * t - scale_ * K_.row_times_low(i, w_);
-    w_.col(i).template head<3>() = inverse_[k] * right;
-  }
-  w = w_ + t_;
-}
-
-template <class T>
-double FemSystem<T>::norm_of_lower(const Columns4& r) const noexcept {
-  double sum = 0.0;
-  for (int i = 0; i < K_.n(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (inverse_[k](0, 0) == 0.0) continue;
-    sum += (diagonal_[k] * r.col(i).template head<3>() + scale_ * K_.row_times_low(i, r)).squaredNorm();
-  }
-  return std::sqrt(sum);
-}
-
-template <class T>
-int FemSystem<T>::conjugate_gradients(const Columns4& b, Columns4& u, const FemSolverOptions& o, double scale) noexcept {
-  double largest = 0.0;
-  const double start = residual(b, u, largest);
-  if (!(start > o.relative * scale)) return 0;
-  x_ = r_;
-  forward(x_, r_);  // r_ is now (D+L)^-1 (b - A u)
-  x_.setZero();
-  const auto times_diagonal = [&](const Columns4& v, int i) -> Vec3 { return diagonal_[static_cast<std::size_t>(i)] * v.col(i).template head<3>(); };
-  double rho = 0.0;
-  for (int i = 0; i < K_.n(); ++i) {
-    const Vec3 z = times_diagonal(r_, i);
-    rho += r_.col(i).template head<3>().dot(z);
-    p_.col(i).template head<3>() = z;
-  }
-  const double per_rho = start / std::sqrt(rho);  // true residual over its norm in M^-1: about constant
+int FemSystem<T>::gauss_seidel(const FemSolverOptions& o, double scale, double& left, double& largest) noexcept {
   int k = 0;
-  Columns4& q = w_;
-  while (k < o.max_iterations && rho > 0.0) {
+  while (k < o.max_iterations && left > o.relative * scale) {
     ++k;
-    apply(p_, q);
-    const double alpha = rho / p_.cwiseProduct(q).sum();
-    x_ += alpha * p_;
-    r_ -= alpha * q;
-    double next = 0.0;
-    for (int i = 0; i < K_.n(); ++i) next += r_.col(i).template head<3>().dot(times_diagonal(r_, i));
-    if (!std::isfinite(next)) break;
-    if (per_rho * std::sqrt(next) < 2.0 * o.relative * scale && norm_of_lower(r_) < o.relative * scale) break;
-    const double beta = next / rho;
-    for (int i = 0; i < K_.n(); ++i) p_.col(i).template head<3>() = times_diagonal(r_, i) + beta * p_.col(i).template head<3>();
-    rho = next;
+    const double seen = sweep(o.relaxation, o.symmetric && k % 2 == 0);
+    if (!(seen > 2.0 * o.relative * scale) || k == o.max_iterations) left = residual(largest);
   }
-  backward(x_, t_);
-  u += t_;
   return k;
+}
+
+template <class T>
+void FemSystem<T>::over_diagonal(std::size_t p, Four<T>& v) const noexcept {
+  if (const int s = special_[p]; s >= 0) v = times_three<T>(moved_[static_cast<std::size_t>(s)].inverse.data(), v);
+}
+
+template <class T>
+void FemSystem<T>::times_diagonal(std::size_t p, Four<T>& v) const noexcept {
+  if (const int s = special_[p]; s >= 0) v = times_three<T>(moved_[static_cast<std::size_t>(s)].diagonal.data(), v);
+}
+
+template <class T>
+void FemSystem<T>::forward() noexcept {
+  Four<T> rows[kGroup];
+  for (int g = 0; g < groups(); ++g) {
+    low_.times(g, r_.data(), rows);
+    for (int l = 0; l < kGroup; ++l) {
+      const auto p = static_cast<std::size_t>(kGroup * g + l);
+      Four<T> y = load_four(&r_[4 * p]) - rows[l];
+      over_diagonal(p, y);
+      store_three<T>(y, &r_[4 * p]);
+    }
+  }
+}
+
+template <class T>
+void FemSystem<T>::backward(const T* from, T* to) const noexcept {
+  Four<T> rows[kGroup];
+  for (int g = groups() - 1; g >= 0; --g) {
+    high_.times(groups() - 1 - g, to, rows);
+    for (int l = 0; l < kGroup; ++l) {
+      const auto p = static_cast<std::size_t>(kGroup * g + l);
+      Four<T> y = load_four(from + 4 * p) - rows[l];
+      over_diagonal(p, y);
+      store_three<T>(y, to + 4 * p);
+    }
+  }
+}
+
+template <class T>
+double FemSystem<T>::apply() noexcept {
+  backward(p_.data(), t_.data());
+  double sum = 0.0;
+  Four<T> rows[kGroup];
+  for (int g = 0; g < groups(); ++g) {  // q_ is (D+L)^-1 (p - D t); t is added where it is used
+    low_.times(g, q_.data(), rows);
+    for (int l = 0; l < kGroup; ++l) {
+      const auto p = static_cast<std::size_t>(kGroup * g + l);
+      const Four<T> v = load_four(&p_[4 * p]), t = load_four(&t_[4 * p]);
+      Four<T> y = t;
+      times_diagonal(p, y);
+      y = v - y - rows[l];
+      over_diagonal(p, y);
+      store_three<T>(y, &q_[4 * p]);
+      sum += static_cast<double>(dot3(v, Four<T>(y + t)));
+    }
+  }
+  return sum;
+}
+
+template <class T>
+double FemSystem<T>::begin_direction() noexcept {
+  double rho = 0.0;
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    const Four<T> r = load_four(&r_[4 * p]);
+    Four<T> z = r;
+    times_diagonal(p, z);
+    store_three<T>(z, &p_[4 * p]);
+    rho += static_cast<double>(dot3(r, z));
+  }
+  return rho;
+}
+
+template <class T>
+double FemSystem<T>::advance(double alpha) noexcept {
+  const T a = static_cast<T>(alpha);
+  double rho = 0.0;
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    store_three<T>(load_four(&x_[4 * p]) + a * load_four(&p_[4 * p]), &x_[4 * p]);
+    const Four<T> r = load_four(&r_[4 * p]) - a * (load_four(&q_[4 * p]) + load_four(&t_[4 * p]));
+    store_three<T>(r, &r_[4 * p]);
+    Four<T> z = r;
+    times_diagonal(p, z);
+    rho += static_cast<double>(dot3(r, z));
+  }
+  return rho;
+}
+
+template <class T>
+void FemSystem<T>::turn(double beta) noexcept {
+  const T b = static_cast<T>(beta);
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    Four<T> z = load_four(&r_[4 * p]);
+    times_diagonal(p, z);
+    store_three<T>(z + b * load_four(&p_[4 * p]), &p_[4 * p]);
+  }
+}
+
+template <class T>
+double FemSystem<T>::norm_of_lower() const noexcept {
+  double sum = 0.0;
+  Four<T> rows[kGroup];
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    if (p % kGroup == 0) low_.times(static_cast<int>(p) / kGroup, r_.data(), rows);
+    const int s = special_[p];
+    if (s >= 0 && moved_[static_cast<std::size_t>(s)].prescribed) continue;
+    Four<T> r = load_four(&r_[4 * p]);
+    times_diagonal(p, r);
+    r += rows[p % kGroup];
+    sum += (root_[p] * Vec3(r[0], r[1], r[2])).squaredNorm();
+  }
+  return std::sqrt(sum);
+}
+
+template <class T>
+int FemSystem<T>::conjugate_gradients(const FemSolverOptions& o, double scale, double& left, double& largest) noexcept {
+  int k = 0;
+  while (k < o.max_iterations && left > o.relative * scale) {  // again if the true residual says so
+    forward();
+    double rho = begin_direction();
+    if (!(rho > 0.0)) break;
+    const double start = left, per_rho = left / std::sqrt(rho);  // true residual over its norm in M^-1: about constant
+    std::fill(x_.begin(), x_.end(), T(0));
+    while (k < o.max_iterations) {
+      ++k;
+      const double next = advance(rho / apply());
+      if (!std::isfinite(next) || !(next > 0.0)) break;
+      if (per_rho * std::sqrt(next) < 2.0 * o.relative * scale && norm_of_lower() < o.relative * scale) break;
+      turn(next / rho);
+      rho = next;
+    }
+    backward(x_.data(), t_.data());
+    for (std::size_t c = 0; c < u_.size(); ++c) u_[c] += static_cast<double>(t_[c]);
+    left = residual(largest);
+    if (!(left < 0.5 * start)) break;  // as far as the numbers reach
+  }
+  return k;
+}
+
+template <class T>
+void FemSystem<T>::forces(const Columns4& b, const Columns4& u, std::span<MovedNode> moved) const noexcept {
+  Vec3 rows[kGroup];
+  for (MovedNode& m : moved) {
+    const int at = position_of_[static_cast<std::size_t>(m.node)];
+    if (at < 0) {
+      m.force = scale_ * K_.row_times(m.node, u) + mass_[m.node] * u.col(m.node).template head<3>() - b.col(m.node).template head<3>();
+    } else if (m.prescribed) {
+      const auto p = static_cast<std::size_t>(at);
+      product(at / kGroup, u_.data(), rows);
+      m.force = root_[p] * (rows[p % kGroup] - three(&b_[4 * p]));
+    } else {
+      m.force = m.stiffness * (m.target - u.col(m.node).template head<3>());
+    }
+  }
 }
 
 template <class T>
 FemSummary FemSystem<T>::solve(const Columns4& b, Columns4& u, std::span<MovedNode> moved, const FemSolverOptions& o) noexcept {
   FemSummary s;
+  gather(b, u);
   place(moved, u);
-  for (int i = 0; i < K_.n(); ++i)
-    if (held_[static_cast<std::size_t>(i)]) u.col(i).setZero();
-  const double scale = scale_of(b, u, moved);
+  const double scale = scale_of();
+  double left = residual(s.residual);
   if (scale > kNothing)
-    s.iterations = o.method == FemSolverOptions::Method::gauss_seidel ? gauss_seidel(b, u, o, scale) : conjugate_gradients(b, u, o, scale);
-  const double left = residual(b, u, s.residual);
-  for (MovedNode& m : moved)
-    m.force = m.prescribed || held_[static_cast<std::size_t>(m.node)] ? Vec3(-unbalanced(m.node, b, u))
-                                                                      : Vec3(m.stiffness * (m.target - u.col(m.node).template head<3>()));
-  lift(moved);
+    s.iterations = o.method == FemSolverOptions::Method::gauss_seidel ? gauss_seidel(o, scale, left, s.residual) : conjugate_gradients(o, scale, left, s.residual);
+  for (int i = 0; i < K_.n(); ++i) {
+    const int at = position_of_[static_cast<std::size_t>(i)];
+    if (at < 0) u.col(i).setZero();
+    else u.col(i).template head<3>() = root_inverse_[static_cast<std::size_t>(at)].transpose() * three(&u_[4 * static_cast<std::size_t>(at)]);
+  }
+  for (const MovedNode& m : moved)
+    if (m.prescribed && position_of_[static_cast<std::size_t>(m.node)] >= 0) u.col(m.node).template head<3>() = m.target;
+  forces(b, u, moved);
+  lift();
   s.relative = scale > kNothing ? left / scale : 0.0;
   s.converged = s.relative <= 1.01 * o.relative;
   s.sound = std::isfinite(left) && u.allFinite();
   return s;
+}
+
+template <class T>
+void FemSystem<T>::stiffness_times(const Columns4& x, Columns4& y) noexcept {
+  y.setZero();
+  Vec3 rows[kGroup];
+  for (std::size_t p = 0; p < node_of_.size(); ++p)
+    if (node_of_[p] >= 0) into(&u_[4 * p]) = root_[p].transpose() * x.col(node_of_[p]).template head<3>();
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    if (p % kGroup == 0) product(static_cast<int>(p) / kGroup, u_.data(), rows);
+    if (const int i = node_of_[p]; i >= 0) y.col(i).template head<3>() = (root_[p] * rows[p % kGroup] - mass_[i] * x.col(i).template head<3>()) / scale_;
+  }
 }
 
 template class FemSystem<double>;

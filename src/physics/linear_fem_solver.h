@@ -8,13 +8,19 @@
 //   conjugate_gradients  preconditioned by one symmetric Gauss-Seidel sweep, M = (D+L) D^-1 (D+U). With Eisenstat's
 //                        identity (SIAM J. Sci. Stat. Comput. 2:1, 1981) an iteration costs one sweep, not two products:
 //                        (D+L)^-1 A (D+U)^-1 v = t + (D+L)^-1 (v - D t),  t = (D+U)^-1 v
-// Stops when |b - A u| over the nodes that are not prescribed falls below `relative` times |b| + |reactions|.
-// Tests: linear_fem_solver_test (against Cholesky), linear_fem_test.
+// Both work on the nodes that are not held, scaled by the Cholesky factors of the diagonal blocks, R_i^-1 A_ij R_j^-T, so that
+// D is the identity but at moved nodes, and in an order of their own: Cuthill-McKee (ACM Nat. Conf. 1969), cut into four
+// stretches that are dealt out in turn, since a sweep whose every row waits for the row before is slow (linear_fem_rows.h).
+// The matrix and the vectors of conjugate gradients are of type T; the residual is summed in double, and iterations begin
+// anew from it until it is small enough, so that float costs sweeps, not accuracy.
+// Stops when |b - A u| over the nodes that are not prescribed falls below `relative` times |b| + |reactions|, |b| over the nodes that
+// are not held.  Tests: linear_fem_test (against Cholesky).
 
 #include <span>
 #include <vector>
 
 #include "physics/linear_fem_matrix.h"
+#include "physics/linear_fem_rows.h"
 
 namespace filum {
 
@@ -24,6 +30,8 @@ struct MovedNode {
   bool prescribed = true;
   Vec3 target = Vec3::Zero();      // [m], displacement
   Mat3 stiffness = Mat3::Zero();   // [N/m], symmetric positive semidefinite; not used if prescribed
+  Vec3 outward = Vec3::Zero();     // unit, the way a mover that only pushes does so; zero: it holds
+  double speed = 0.0;              // [m/s], of the mover that way
   Vec3 force = Vec3::Zero();       // [N], of the mover on the node; set by the solver
 };
 
@@ -48,36 +56,58 @@ template <class T>
 class FemSystem {
  public:
   /// K must outlive the system. Call set() before the first solve and whenever K, s, m or the held nodes change.
-  explicit FemSystem(const BlockMatrix<T>& K);
+  explicit FemSystem(const BlockMatrix& K) : K_(K) {}
   void set(double scale, const Eigen::VectorXd& mass, const std::vector<char>& held);
 
   /// `u` holds the first guess and then the answer; zero at held nodes. Allocates nothing.
   FemSummary solve(const Columns4& b, Columns4& u, std::span<MovedNode> moved, const FemSolverOptions& options) noexcept;
+  /// y = K x at the nodes that are not held, 0 at the others, where x must be zero, too.
+  void stiffness_times(const Columns4& x, Columns4& y) noexcept;
 
  private:
+  /// The diagonal of a moved node, scaled, by columns; `inverse` 0 where it is prescribed.
+  struct Moved {
+    std::array<T, 12> diagonal{}, inverse{};
+    Mat3 block = Mat3::Identity(), spring = Mat3::Zero();
+    Vec3 pull = Vec3::Zero();  // spring times target
+    int position = 0;
+    bool prescribed = false;
+  };
+  void order(const std::vector<char>& held);
+  bool deal(const std::vector<int>& list, int streams);
+  void fill();
+  void gather(const Columns4& b, const Columns4& u) noexcept;
   void place(std::span<const MovedNode> moved, Columns4& u) noexcept;
-  void lift(std::span<const MovedNode> moved) noexcept;
-  double scale_of(const Columns4& b, const Columns4& u, std::span<const MovedNode> moved) const noexcept;
-  Vec3 unbalanced(int i, const Columns4& b, const Columns4& u) const noexcept;
-  double residual(const Columns4& b, const Columns4& u, double& largest) noexcept;
-  double sweep(const Columns4& b, Columns4& u, double w, bool back) noexcept;
-  int gauss_seidel(const Columns4& b, Columns4& u, const FemSolverOptions& o, double scale) noexcept;
-  int conjugate_gradients(const Columns4& b, Columns4& u, const FemSolverOptions& o, double scale) noexcept;
-  void forward(const Columns4& r, Columns4& y) const noexcept;   // (D+L) y = r
-  void backward(const Columns4& r, Columns4& y) const noexcept;  // (D+U) y = r
-  void apply(const Columns4& v, Columns4& w) noexcept;           // w = (D+L)^-1 A (D+U)^-1 v
-  double norm_of_lower(const Columns4& r) const noexcept;        // |(D+L) r|
+  void lift() noexcept;
+  double scale_of() const noexcept;
+  static constexpr int kGroup = TriangleRows<T>::kGroup;
+  int groups() const noexcept { return static_cast<int>(node_of_.size()) / kGroup; }
+  void product(int group, const double* x, Vec3* rows) const noexcept;  // of the scaled matrix without movers
+  double residual(double& largest) noexcept;
+  double sweep(double w, bool back) noexcept;
+  int gauss_seidel(const FemSolverOptions& o, double scale, double& left, double& largest) noexcept;
+  int conjugate_gradients(const FemSolverOptions& o, double scale, double& left, double& largest) noexcept;
+  void forward() noexcept;                             // r <- (D+L)^-1 r
+  double begin_direction() noexcept;                   // p = D r
+  void backward(const T* from, T* to) const noexcept;  // (D+U) to = from
+  double apply() noexcept;                             // q = (D+L)^-1 A (D+U)^-1 p; returns p.q
+  double advance(double alpha) noexcept;               // x += alpha p, r -= alpha q; returns r.D r
+  void turn(double beta) noexcept;                     // p = D r + beta p
+  double norm_of_lower() const noexcept;               // |(D+L) r|, of the unscaled residual
+  void times_diagonal(std::size_t position, Four<T>& v) const noexcept;
+  void over_diagonal(std::size_t position, Four<T>& v) const noexcept;
+  void forces(const Columns4& b, const Columns4& u, std::span<MovedNode> moved) const noexcept;
 
-  const BlockMatrix<T>& K_;
+  const BlockMatrix& K_;
   double scale_ = 1.0;
   Eigen::VectorXd mass_;
-  std::vector<char> held_;               // nodes that do not move
-  std::vector<Mat3> diagonal_, inverse_; // of A and, at moved nodes, of A + S; inverse 0 where the node is held or prescribed
-  std::vector<Mat3> saved_diagonal_, saved_inverse_;
-  std::vector<Vec3> support_;            // [N], S (t - u) belongs to the right side: S t of each moved node
-  std::vector<int> support_of_;          // node -> index in support_, -1 none
-  std::vector<Mat3> support_stiffness_;
-  Columns4 r_, p_, w_, t_, x_;
+  std::vector<int> node_of_, position_of_;  // position in the sweep <-> node, -1 nobody's, held
+  TriangleRows<T> low_, high_;              // strict triangles; groups of `high_` from the last to the first
+  std::vector<Mat3> root_, root_inverse_;   // R_i of each position
+  std::vector<int> special_;                // position -> index in moved_, -1 none
+  std::vector<Moved> moved_;
+  std::vector<double> b_, u_;               // scaled, four numbers a position
+  std::vector<T> r_, p_, q_, t_, x_;
 };
 
 }  // namespace filum

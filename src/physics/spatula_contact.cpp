@@ -81,6 +81,8 @@ MovedNode SpatulaContact::pull(const LinearFem& fem, const Points& u, const Movi
   m.prescribed = false;
   m.stiffness = k * n * n.transpose() + k_t * along;
   m.target = u.col(c.node) - p.gap * n + bristle;
+  m.outward = c.side * n;
+  m.speed = (x - blade.X_before * q).dot(m.outward) / fem.options().dt;
   return m;
 }
 

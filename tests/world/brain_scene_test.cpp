@@ -43,6 +43,21 @@ TEST(BrainScene, PressingRaisesForceAndPressureTogether) {
   EXPECT_LT((blade.push_W + blade.turn_W).norm(), 3.0 * blade.force_W.norm());
 }
 
+TEST(BrainScene, ABladeBroughtInFastComesToRest) {
+  for (const double depth : {11e-3, 13e-3, 15e-3, 18.5e-3}) {  // 3 to 10.5 mm into the tissue, at 0.3 m/s
+    World world(scene("press-to-target"));
+    double least = 1e9, most = 0.0;
+    for (int k = 1; k <= 240; ++k) {
+      world.step(inputs_at(world, Vec3(0, 0, -std::min(depth, 0.3 * 0.005 * k))));
+      if (k <= 160) continue;
+      least = std::min(least, world.observation().brain.blades[0].force_W.z());
+      most = std::max(most, world.observation().brain.blades[0].force_W.z());
+    }
+    EXPECT_GT(least, 0.1);
+    EXPECT_LT(most - least, 0.01 * most) << depth;
+  }
+}
+
 TEST(BrainScene, SameInputsGiveTheSameStatesAndARestoredStateGoesOnTheSame) {
   World a(scene("press-to-target")), b(scene("press-to-target"));
   press(a, 11e-3, 200);
