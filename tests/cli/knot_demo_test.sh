@@ -1,6 +1,6 @@
 #!/bin/bash
 # The demonstration of a square knot, by device poses only: it must be called a square knot, with every step recognised, both ends cut and the
-# knot pulled, and the recording must replay bit for bit. Usage: knot_demo_test.sh FILUM ROOT
+# knot pulled, and the recording must replay bit for bit. That of the granny must be called a granny and not pass. Usage: knot_demo_test.sh FILUM ROOT
 filum=$1 root=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -16,3 +16,8 @@ node -e '
 ' "$work/run.json" || fail "not a square knot"
 "$filum" replay "$work/knot.filum" --json >"$work/replay.json" || fail "replay: $(cat "$work/replay.json")"
 grep -q '"identical": *true' "$work/replay.json" || fail "replay differs: $(cat "$work/replay.json")"
+"$filum" run knot-granny --input demo --json >"$work/run.json" 2>"$work/run.err" || fail "granny: $(cat "$work/run.err")"
+node -e '
+  const d = JSON.parse(require("fs").readFileSync(process.argv[1]));
+  if (d.knot.class !== "granny" || d.passed) { console.error(d.knot, d.passed); process.exit(1); }
+' "$work/run.json" || fail "not a granny"
