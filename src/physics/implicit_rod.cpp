@@ -12,6 +12,7 @@ namespace {
 constexpr int kMostHalvings = 14;
 constexpr int kMostTethers = 256;
 constexpr int kMostRounds = 4;  // of contact prediction in a Newton step
+constexpr int kMoreToArrive = 3;  // times the iterations while a body is under way: the next step takes it for arrived, and it must not jump over thread
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
 constexpr double kLeastReach = 0.05;    // [radii], of the search for near pairs
 constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
@@ -77,7 +78,8 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
     const double moment = gradient_.leftCols(s.n).row(3).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / material.radius;
     if (!std::isfinite(summary.residual + moment)) break;
     summary.converged = summary.arrived && std::max(summary.residual, 0.1 * moment) < std::max(o.force_tolerance, o.relative_tolerance * force_scale(s));
-    if (summary.converged || summary.iterations == o.max_iterations) break;
+    const int most = summary.arrived ? o.max_iterations : kMoreToArrive * o.max_iterations;
+    if (summary.converged || summary.iterations >= most) break;
     if (!newton_step(s, memory, o, summary)) break;
   }
   restore_rest(s);

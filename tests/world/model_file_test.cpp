@@ -57,7 +57,7 @@ TEST_F(ModelFile, DirectionIsOfLengthOneAndNotZero) {
 }
 
 TEST_F(ModelFile, PoseIsARotationWithTheHandleAlongZ) {
-  const YamlNode f = open("a: { p: [1, 2, 3], handle: [0, 1, 1], opening: [1, 1, 0] }\nb: { p: [0, 0, 0], handle: [0, 1, 0], opening: [0, 2, 0] }");
+  const YamlNode f = open("a: { p: [\"1 mm\", \"2 mm\", \"3 mm\"], handle: [0, 1, 1], opening: [1, 1, 0] }\nb: { p: [\"0 mm\", \"0 mm\", \"0 mm\"], handle: [0, 1, 0], opening: [0, 2, 0] }");
   const Pose X = read_pose(f.map("a"));
   EXPECT_LT((X.p - Vec3(1e-3, 2e-3, 3e-3)).norm(), 1e-15);
   EXPECT_LT((X.q * Vec3::UnitZ() - Vec3(0, 1, 1).normalized()).norm(), 1e-12);
