@@ -6,6 +6,8 @@
 namespace filum {
 namespace {
 
+constexpr std::uint32_t kForceSaturated = 0x200;  // bit of SampleRecord::buttons, as devices/sample_faults.h sets it
+
 /// Scene time of a host time: scripts and replays stamp their samples with the scene's own time, hands with the host's.
 class SceneClock {
  public:
@@ -58,6 +60,7 @@ void read_samples(const RecordingReader& recording, const SceneClock& scene, std
       grip.clock.push_back(clock);
       grip.scene.push_back(at);
       grip.force.push_back(s.grip_force);
+      grip.saturated += (s.buttons & kForceSaturated) != 0 ? 1 : 0;
     }
   }
   for (std::size_t i = 0; i < 3; ++i) tools[i].hand.p = points_of(flat[i]);

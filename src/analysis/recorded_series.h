@@ -27,6 +27,7 @@ struct TimedForce {
   std::vector<double> clock, scene;  // [s]
   std::vector<double> force;         // [N]
   std::string source = "none";       // "device", "simulation" or "none"
+  std::size_t saturated = 0;         // readings at the end of the amplifier's range: the true force may be larger
 };
 
 struct Window {

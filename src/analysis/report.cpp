@@ -216,6 +216,7 @@ Json force_json(const ToolSeries& tool, const std::optional<GraspBands>& bands, 
     json["why"] = "no squeeze was measured";
     return json;
   }
+  json["saturated_share"] = tool.grip.force.empty() ? 0.0 : static_cast<double>(tool.grip.saturated) / static_cast<double>(tool.grip.force.size());
   json["summary"] = grasp_summary(grasps);
   if (bands) {
     const GraspErrors errors = errors_of(grasps, *bands);

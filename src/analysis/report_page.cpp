@@ -110,7 +110,11 @@ std::string force_html(const Json& list) {
     const Json& e = f["errors"];
     html += cell(e.contains("why") ? escaped(e["why"].get<std::string>()) : number(e["high"]) + ", " + number(e["low"]) + ", " + number(e["variable"])) + "</tr>";
   }
-  return html + "</table>";
+  html += "</table>";
+  for (const Json& f : list)
+    if (f.value("saturated_share", 0.0) > 0.0)
+      html += "<p class=\"refused\">Tool " + number(f["tool"]) + ": " + number(f["saturated_share"], 100.0) + " % of the readings at the end of the amplifier's range: peaks are larger than shown.</p>";
+  return html;
 }
 
 std::string session_html(const Json& s) {

@@ -34,7 +34,7 @@ Json fit_json(const CalibrationFit& f, double scale, const char* unit) {
   Json residuals = Json::array();
   for (const double r : f.residuals) residuals.push_back(r / scale);
   return {{"good", f.good}, {"why", f.why}, {"unit", unit}, {"gain", f.gain / scale}, {"zero", f.zero}, {"uncertainty", f.uncertainty / scale},
-          {"hysteresis", f.hysteresis / scale}, {"repeatability", f.repeatability / scale}, {"residuals", residuals}};
+          {"from", f.from / scale}, {"to", f.to / scale}, {"residual", f.residual / scale}, {"hysteresis", f.hysteresis / scale}, {"repeatability", f.repeatability / scale}, {"residuals", residuals}};
 }
 
 Json points_json(const std::vector<CalibrationPoint>& points, double scale) {
@@ -82,6 +82,11 @@ CalibrationPlan calibration_plan(const std::string& text, std::string port, std:
       throw InputError("calibration", "repeats", wish["repeats"].dump().substr(0, 80), "a whole number from 1 to 20");
     plan.repeats = wish["repeats"].get<int>();
   }
+  if (wish.contains("identity")) {
+    if (!wish["identity"].is_number_integer() || wish["identity"] < 1 || wish["identity"] > 2147483647)
+      throw InputError("calibration", "identity", wish["identity"].dump().substr(0, 80), "a whole number from 1 to 2147483647");
+    plan.identity = wish["identity"].get<unsigned>();
+  }
   return plan;
 }
 
@@ -116,6 +121,14 @@ void CalibrationSession::read() {
   guides_[at_].begin();
 }
 
+void CalibrationSession::undo() {
+  const std::lock_guard lock(guard_);
+  if (at_ >= guides_.size()) return;
+  trouble_.clear();
+  if (at_ > 0 && !guides_[at_].reading() && guides_[at_].points().empty()) --at_;
+  guides_[at_].undo();
+}
+
 /// Always drains the port; what waited there when a reading was asked for does not count.
 void CalibrationSession::work() {
   while (!quit_) {
@@ -127,6 +140,10 @@ void CalibrationSession::work() {
       if (reader_->stale) {
         reader_->stale = !emptied;
         reader_->samples.clear();
+      }
+      for (const DeviceSample& sample : reader_->samples) {
+        if (sample.raw_angle != 0 || sample.has_grip_angle) live_[0] = sample.has_grip_angle ? sample.raw_angle : -1.0;
+        if (sample.raw_force != 0 || sample.has_grip_force) live_[1] = sample.has_grip_force ? sample.raw_force : -1.0;
       }
       if (at_ < guides_.size() && guides_[at_].reading()) {
         CalibrationGuide& guide = guides_[at_];
@@ -150,7 +167,7 @@ void CalibrationSession::finish() {
   std::error_code error;
   std::filesystem::create_directories(plan_.folder, error);
   const std::string path = plan_.folder + "/" + plan_.name + "-" + stamp("%Y%m%d-%H%M%S") + ".yaml";
-  const CalibrationHeader header{plan_.name, plan_.sensor, stamp("%Y-%m-%d"), 1, 1.2 * std::max(-angle_.from, angle_.to), 1.2 * force_.to};
+  const CalibrationHeader header{plan_.name, plan_.sensor, stamp("%Y-%m-%d"), plan_.identity, 1.2 * std::max(-angle_.from, angle_.to), 1.2 * force_.to};
   std::ofstream file(path);
   file << calibration_text(header, readings, angle_, force_);
   if (file.flush()) file_ = path;
@@ -172,6 +189,8 @@ Json CalibrationSession::status() const {
                {"instruction", done ? "" : guides_[at_].instruction()},
                {"taken", guides_[0].points().size() + guides_[1].points().size()},
                {"of", per * (plan_.angles.size() + plan_.forces.size())},
+               {"progress", done ? 1.0 : guides_[at_].progress()},
+               {"live", done || live_[at_] < 0.0 ? Json(nullptr) : Json(live_[at_])},
                {"trouble", trouble_},
                {"file", file_},
                {"angle", points_json(guides_[0].points(), kDegree)},

@@ -21,6 +21,7 @@ struct CalibrationPlan {
   std::vector<double> angles = {0, 5, 10, 15, 20, 25};       // [deg], growing
   std::vector<double> forces = {0, 0.2, 0.5, 1.0, 2.0, 3.0};  // [N], growing
   int repeats = 2;
+  unsigned identity = 1;                      // as it is stored in the handle
 };
 
 class CalibrationSession {
@@ -33,6 +34,8 @@ class CalibrationSession {
   nlohmann::ordered_json status() const;
   /// The value asked for is set: read it. Ignored while reading or when all is done.
   void read();
+  /// The last value again (or the reading under way); not once all is done.
+  void undo();
   /// Path of the file once both fits are good, else empty.
   std::string file() const;
 
@@ -46,13 +49,14 @@ class CalibrationSession {
   std::vector<CalibrationGuide> guides_;  // angle, force; guarded
   std::size_t at_ = 0;                    // which of them; guarded
   std::string trouble_, file_;            // guarded
+  double live_[2] = {-1.0, -1.0};         // [count], newest of angle and force, below 0 none; guarded
   CalibrationFit angle_, force_;          // guarded
   std::atomic<bool> quit_ = false;
   std::unique_ptr<Reader> reader_;
   std::thread thread_;
 };
 
-/// From a page's wish: sensor, name, repeats, angles [deg], forces [N]; what is absent keeps its default. Throws InputError.
+/// From a page's wish: sensor, name, identity, repeats, angles [deg], forces [N]; what is absent keeps its default. Throws InputError.
 CalibrationPlan calibration_plan(const std::string& json, std::string port, std::string root, std::string folder);
 
 }  // namespace filum

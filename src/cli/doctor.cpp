@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <boost/version.hpp>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -18,6 +19,8 @@
 #include "base/error.h"
 #include "cli/options.h"
 #include "cli/setup.h"
+#include "devices/sample_faults.h"
+#include "devices/serial_forceps.h"
 #include "haptics/haptic_loop.h"
 #include "session/recorder.h"
 #include "session/store.h"
@@ -30,7 +33,7 @@ namespace fs = std::filesystem;
 
 struct DoctorOptions {
   CommonOptions common;
-  std::string store, viewer, serial;
+  std::string store, viewer, serial, forceps;
 };
 
 struct Check {
@@ -119,6 +122,36 @@ Check check_devices(const std::string& serial) {
   return {"devices", ok, detail, ok ? "" : "Add yourself to the group of the port (usually dialout) and log in again."};
 }
 
+/// Listens to the handle for two seconds: what it is, what is lost, its clock, and whether the calibration in use is its own.
+Check check_handle(const DoctorOptions& o) {
+  SerialForceps handle(o.serial, ForcepsCalibration::load(o.forceps.empty() ? o.common.root + "/models/forceps/default.yaml" : o.forceps));
+  std::vector<DeviceSample> samples;
+  samples.reserve(kMaxSamplesPerPoll);
+  std::uint32_t faults = 0;
+  const std::int64_t begin = steady_now_us();
+  for (std::int64_t now = begin; now < begin + 2'000'000; now = steady_now_us()) {
+    samples.clear();
+    handle.poll(now, samples);
+    for (const DeviceSample& s : samples) faults |= s.buttons & ~kButtonBits;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  const ForcepsStream& stream = handle.stream();
+  const DeviceHealth health = handle.health();
+  if (health.received == 0) return {"handle", false, o.serial + " says nothing", "Is it the right port, is the firmware on it, does it run at 500 kbit/s?"};
+  std::string detail = std::to_string(health.received / 2) + " samples/s, " + std::to_string(health.lost) + " lost, " + std::to_string(health.corrupt) + " corrupt";
+  if (stream.hello()) {
+    const filum_hello& hello = *stream.hello();
+    detail += ", firmware " + std::to_string(hello.firmware[0]) + "." + std::to_string(hello.firmware[1]) + "." + std::to_string(hello.firmware[2]) + ", calibration " + std::to_string(hello.calibration);
+  }
+  if (stream.clock().known())
+    detail += ", clock offset " + std::to_string(stream.clock().offset_us()) + " +- " + std::to_string(stream.clock().uncertainty_us()) + " us";
+  if (stream.calibration_differs()) return {"handle", false, detail, "The calibration in use is not this handle's: give it with --forceps, or calibrate again."};
+  if (faults & (kAngleBroken | kForceBroken)) return {"handle", false, detail, "A wire of its sensors is broken or shorted."};
+  if (faults != 0) return {"handle", false, detail, "An amplifier is at the end of its range: trim it, see hardware/forceps."};
+  const bool sound = health.lost == 0 && health.corrupt == 0;
+  return {"handle", sound, detail, sound ? "" : "Use a shorter cable, another port or an isolator."};
+}
+
 Check check_store(const std::string& folder) {
   try {
     const Store store(folder);
@@ -167,7 +200,7 @@ Check guarded(const char* name, Function check) {
 }
 
 int run(const DoctorOptions& o) {
-  const std::vector<Check> checks = {
+  std::vector<Check> checks = {
       check_cores(),
       check_timer(),
       guarded("speed", [&] { return check_speed(o.common.root); }),
@@ -177,6 +210,7 @@ int run(const DoctorOptions& o) {
       check_files(o.common.root),
       check_versions(),
   };
+  if (!o.serial.empty()) checks.push_back(guarded("handle", [&] { return check_handle(o); }));
   const bool ok = std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
   if (o.common.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -200,6 +234,7 @@ void add_doctor(CLI::App& app, Action& action) {
   o->viewer = std::string(source_folder()) + "/src/viewer/dist";
   command->add_option("--viewer", o->viewer, "Folder of the built viewer")->capture_default_str();
   command->add_option("--serial", o->serial, "Serial port of the forceps");
+  command->add_option("--forceps", o->forceps, "Calibration of the forceps that is to be used with it");
   add_common(*command, o->common);
   command->callback([o, &action] { action.run = [o] { return run(*o); }; });
 }

@@ -119,14 +119,22 @@ InputDevices open_inputs(const std::string& input, const std::string& root, cons
   return result;
 }
 
-InputDevices open_live_inputs(const std::string& serial_port, const std::string& root, const std::string& calibration) {
+InputDevices open_live_inputs(const LiveDevices& devices, const std::string& root) {
+  const std::string calibration = calibration_file(devices.calibration, root);
   InputDevices result;
+  if (!devices.hands.empty()) {
+    result = open_hands(devices.hands, devices.motion_scale, calibration);
+    if (devices.serial_port.empty()) return result;
+    result.devices.push_back(open_forceps(devices.serial_port, calibration));
+    result.description += " and serial " + devices.serial_port;
+    return result;
+  }
   auto pointer = std::make_unique<PointerDevice>();
   result.pointer = pointer.get();
   result.description = "pointer";
-  if (!serial_port.empty()) {
-    result.devices.push_back(open_forceps(serial_port, calibration_file(calibration, root)));
-    result.description = "serial " + serial_port + " and pointer";
+  if (!devices.serial_port.empty()) {
+    result.devices.push_back(open_forceps(devices.serial_port, calibration));
+    result.description = "serial " + devices.serial_port + " and pointer";
   }
   result.devices.push_back(std::move(pointer));
   return result;

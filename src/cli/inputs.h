@@ -23,8 +23,18 @@ struct InputDevices {
 /// `calibration`: file of the forceps, empty: models/forceps/default.yaml; refused where no forceps is read.
 InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task, double motion_scale = 1.0, const std::string& calibration = "");
 
-/// The pointer of the browser alone, or the forceps on `serial_port` with the pointer for what they do not measure.
-InputDevices open_live_inputs(const std::string& serial_port, const std::string& root, const std::string& calibration = "");
+/// What the hands of a trainee in the browser move.
+struct LiveDevices {
+  std::string serial_port;    // of the forceps, empty: none
+  std::string calibration;    // of the forceps, empty: as built
+  std::string hands;          // "haptic:PORT", "igtl:PORT", joined by "+", empty: none
+  double motion_scale = 1.0;  // of `hands`
+  bool any() const { return !serial_port.empty() || !hands.empty(); }
+};
+
+/// The pointer of the browser alone (no device at all), the forceps with the pointer for what they do not measure, or `hands`, which know
+/// where they are, with the forceps beside them. Throws InputError.
+InputDevices open_live_inputs(const LiveDevices& devices, const std::string& root);
 
 const char* name_of(DeviceState state) noexcept;
 

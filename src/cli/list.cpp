@@ -1,6 +1,7 @@
 // filum list: what there is to run.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -21,8 +22,10 @@ int run(const CommonOptions& o) {
   Json tasks = Json::array();
   Json curricula = Json::array();
   for (const Task& task : load_tasks(o.root, problems)) {
-    tasks.push_back({{"name", task.name}, {"title", task.title}, {"demonstration_only", task.demonstration_only}});
+    const std::string curriculum = curriculum_of(o.root, task.name);
+    tasks.push_back({{"name", task.name}, {"title", task.title}, {"demonstration_only", task.demonstration_only}, {"curriculum", curriculum}});
     curricula.push_back(task.name);
+    if (!curriculum.empty() && std::find(curricula.begin(), curricula.end(), Json(curriculum)) == curricula.end()) curricula.push_back(curriculum);
   }
   Json rigs = Json::array(), effects = Json::array();
   for (const auto& rig : reconcile::rigs()) rigs.push_back(rig.name);

@@ -9,7 +9,7 @@
 #include "cli/live_session.h"
 #include "cli/options.h"
 #include "cli/session_files.h"
-#include "devices/igtl_stream.h"
+#include "cli/tool_stream.h"
 
 namespace filum {
 namespace {
@@ -54,13 +54,10 @@ int run(const RunOptions& o) {
   options.paced = o.real_time || !inputs.scripted;  // hands cannot be hurried
   options.longest = o.longest;
   options.recorder = recorder.get();
-  std::unique_ptr<IgtlStream> stream;
+  std::unique_ptr<ToolStream> stream;
   if (o.stream_port > 0) {
-    stream = std::make_unique<IgtlStream>("127.0.0.1", o.stream_port);
-    options.show = [&stream](const LiveView& view) {
-      const auto us = static_cast<std::int64_t>(1e6 * view.observation.time);
-      for (int i = 0; i < view.observation.n_tools; ++i) stream->send(i, view.observation.tools[static_cast<std::size_t>(i)].X_WT, us);
-    };
+    stream = std::make_unique<ToolStream>(o.stream_port);
+    options.show = [&stream](const LiveView& view) { stream->send_all(view.observation); };
   }
   LiveSession session(std::move(setup), std::move(inputs), std::move(options));
   session.start();

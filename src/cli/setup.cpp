@@ -4,24 +4,22 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "world/task_folder.h"
 
 namespace filum {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string task_file(const std::string& root, const std::string& task) { return root + "/curricula/" + task + "/task.yaml"; }
+std::string task_file(const std::string& root, const std::string& task) { return root + "/" + task_folder(root, task) + "/task.yaml"; }
 
 }  // namespace
 
 std::vector<std::string> task_names(const std::string& root) {
   std::vector<std::string> names;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(fs::path(root) / "curricula", error)) {
-    const std::string name = entry.path().filename().string();
-    if (fs::is_regular_file(task_file(root, name), error)) names.push_back(name);
-  }
-  std::sort(names.begin(), names.end());
+  for (const auto& [name, folder] : task_folders(root))  // in order
+    if (fs::is_regular_file(fs::path(root) / folder / "task.yaml", error)) names.push_back(name);
   return names;
 }
 
@@ -60,7 +58,12 @@ std::vector<std::string> model_names(const std::string& root) {
 }
 
 std::string demonstration_file(const std::string& root, const std::string& task) {
-  return root + "/curricula/" + task + "/demonstration.yaml";
+  return root + "/" + task_folder(root, task) + "/demonstration.yaml";
+}
+
+std::string curriculum_of(const std::string& root, const std::string& task) {
+  const fs::path above = fs::path(task_folder(root, task)).parent_path().filename();
+  return above == "curricula" ? std::string() : above.string();
 }
 
 }  // namespace filum

@@ -31,4 +31,7 @@ std::vector<std::string> model_names(const std::string& root);
 
 std::string demonstration_file(const std::string& root, const std::string& task);
 
+/// "research" for a task in curricula/research, empty for one that belongs to none.
+std::string curriculum_of(const std::string& root, const std::string& task);
+
 }  // namespace filum

@@ -44,10 +44,9 @@ HelloView hello_of(const TrainerOptions& options) {
   for (const std::string& problem : problems) std::fprintf(stderr, "filum: task left out: %s\n", problem.c_str());
   hello.inputs = {"pointer"};
   if (any_shown) hello.inputs.emplace_back("demo");
-  if (!options.serial_port.empty()) {
-    hello.inputs.emplace_back("device");
-    hello.devices.push_back({"serial " + options.serial_port, "waiting", 0, 0, 0, 0});
-  }
+  if (!options.serial_port.empty() || !options.hands.empty()) hello.inputs.emplace_back("device");
+  if (!options.hands.empty()) hello.devices.push_back({options.hands, "waiting", 0, 0, 0, 0});
+  if (!options.serial_port.empty()) hello.devices.push_back({"serial " + options.serial_port, "waiting", 0, 0, 0, 0});
   return hello;
 }
 
@@ -95,9 +94,11 @@ std::vector<DeviceView> device_views_of(const HapticReport& hands, const std::ve
 
 Trainer::Trainer(TrainerOptions options)
     : options_(std::move(options)),
-      lab_({options_.root, options_.datasets.empty() ? options_.store_folder + "/datasets" : options_.datasets, options_.store_folder, options_.serial_port, options_.calibration},
+      lab_({options_.root, options_.datasets.empty() ? options_.store_folder + "/datasets" : options_.datasets, options_.store_folder, options_.serial_port, options_.calibration, options_.camera, camera_program()},
            [this](const std::string& session) { return recording_of(session); }) {
   check_model(options_);
+  if (!options_.hands.empty()) open_live_inputs({"", "", options_.hands, options_.motion_scale}, options_.root);  // refused before anybody waits
+  if (options_.igtl_out > 0) stream_ = std::make_unique<ToolStream>(options_.igtl_out);
   ServerOptions server;
   server.address = options_.address;
   server.port = options_.port;
@@ -247,13 +248,13 @@ void Trainer::start_task(const StartMessage& start) {
   view_.session.clear();
   publish_state("loading");
   Setup setup = load_setup(options_.root, start.task, options_.model_file);
-  if (start.input == "device" && options_.serial_port.empty()) {
-    throw InputError("start", "input", "device", "a trainer started with --serial PATH");
-  }
-  if (start.input == "device" && lab_.calibrating()) throw InputError("start", "input", "device", "to end the calibration first: it uses the forceps");
-  lab_.port_in_use(start.input == "device");
-  InputDevices inputs = start.input == "demo" ? open_inputs("demo", options_.root, start.task)
-                                              : open_live_inputs(start.input == "device" ? options_.serial_port : "", options_.root, lab_.calibration());
+  LiveDevices devices;
+  if (start.input == "device") devices = {options_.serial_port, lab_.calibration(), options_.hands, options_.motion_scale};
+  if (start.input == "device" && !devices.any()) throw InputError("start", "input", "device", "a trainer started with --serial PATH or --hands");
+  const bool serial = !devices.serial_port.empty();
+  if (serial && lab_.calibrating()) throw InputError("start", "input", "device", "to end the calibration first: it uses the forceps");
+  lab_.port_in_use(serial);
+  InputDevices inputs = start.input == "demo" ? open_inputs("demo", options_.root, start.task) : open_live_inputs(devices, options_.root);
   start_session(start, std::move(setup), std::move(inputs));
 }
 
@@ -277,7 +278,8 @@ void Trainer::start_session(const StartMessage& start, Setup setup, InputDevices
   begin_recording(start, setup, inputs.description);
   LiveOptions options;
   options.recorder = recorder_.get();
-  options.show = [server = server_.get()](const LiveView& v) {
+  options.show = [server = server_.get(), stream = stream_.get()](const LiveView& v) {
+    if (stream) stream->send_all(v.observation);
     const TaskView task = task_view_of(v.status);
     server->publish_frame(frame_body(v.observation, &task, device_views_of(v.hands, v.device_names)),
                           v.observation.real_time_factor, v.observation.overruns);

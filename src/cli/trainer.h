@@ -17,6 +17,7 @@
 #include "cli/knot_pull.h"
 #include "cli/live_session.h"
 #include "cli/replay_session.h"
+#include "cli/tool_stream.h"
 #include "cli/trainer_lab.h"
 #include "server/server.h"
 #include "session/store.h"
@@ -33,6 +34,10 @@ struct TrainerOptions {
   std::string viewer_folder;
   std::string store_folder;
   std::string datasets;           // of reconcile, empty: store_folder/datasets
+  std::string hands;              // "haptic:PORT+igtl:PORT...", devices beside or instead of the forceps; empty: none
+  double motion_scale = 1.0;      // of these
+  int igtl_out = 0;               // port for the tools' poses, 0: none
+  std::string camera;             // video for the calibration of a camera instead of a camera
 };
 
 class Trainer final : public ServerHost {
@@ -83,6 +88,7 @@ class Trainer final : public ServerHost {
   std::unique_ptr<Server> server_;
   TrainerView view_;                    // of run()'s thread
 
+  std::unique_ptr<ToolStream> stream_;  // may be absent
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<ReplaySession> replay_;

@@ -62,6 +62,7 @@ Json TrainerLab::calibration_status() const {
 std::optional<std::string> TrainerLab::get(std::string_view path) {
   if (path == "/api/reconcile") return text_of(reconcile_.status());
   if (path == "/api/calibration") return text_of(calibration_status());
+  if (path == "/api/camera") return text_of(camera_status());
   if (!take(path, "/api/analysis/")) return std::nullopt;
   const std::size_t slash = path.find('/');
   return analysis(std::string(path.substr(0, slash)), slash == path.npos ? "" : std::string(path.substr(slash + 1)));
@@ -79,7 +80,37 @@ std::optional<std::string> TrainerLab::post(std::string_view path, const std::st
   }
 }
 
+Json TrainerLab::camera_status() const {
+  const std::lock_guard lock(guard_);
+  return {{"there", !options_.camera_program.empty()}, {"fixed", options_.camera}, {"run", camera_ ? camera_->status() : Json(nullptr)}};
+}
+
+/// A session is ended outside the lock: its program may take a moment to let the camera go.
+Json TrainerLab::change_camera(std::string_view what, const std::string& body) {
+  std::unique_ptr<CameraSession> old, fresh;
+  if (what == "start") {
+    auto plan = camera_plan(body, options_.camera_program, options_.folder + "/calibrations", options_.camera);
+    {
+      const std::lock_guard lock(guard_);
+      old = std::move(camera_);
+    }
+    old.reset();  // lets the camera go before it is opened again
+    fresh = std::make_unique<CameraSession>(std::move(plan));
+  }
+  {
+    const std::lock_guard lock(guard_);
+    if (fresh) camera_ = std::move(fresh);
+    else if (!camera_) throw InputError("camera", "run", "none", "a calibration that was started");
+    else if (what == "undo" || what == "calibrate") camera_->tell(std::string(what));
+    else if (what == "stop") old = std::move(camera_);
+    else return nullptr;
+  }
+  old.reset();
+  return camera_status();
+}
+
 Json TrainerLab::change(std::string_view path, const std::string& body) {
+  if (take(path, "/api/camera/")) return change_camera(path, body);
   if (path == "/api/reconcile/start") reconcile_.start(field(body, "dataset"));
   else if (path == "/api/reconcile/cancel") reconcile_.cancel();
   else if (!path.starts_with("/api/calibration/")) return nullptr;
@@ -96,6 +127,7 @@ Json TrainerLab::change(std::string_view path, const std::string& body) {
     const std::lock_guard lock(guard_);
     if (!calibration_) throw InputError("calibration", "run", "none", "a calibration that was started");
     if (path == "read") calibration_->read();
+    else if (path == "undo") calibration_->undo();
     else if (path == "stop") calibration_.reset();
     else if (path == "use") {
       if (calibration_->file().empty()) throw InputError("calibration", "file", "none", "a calibration that was accepted");
@@ -112,6 +144,12 @@ std::optional<Document> TrainerLab::document(std::string_view path) {
     const auto at = analyses_.find(std::string(path));
     if (at == analyses_.end() || at->second.state != "ready") return std::nullopt;
     return Document{"text/html; charset=utf-8", at->second.text};
+  }
+  if (path == "/documents/camera/preview.jpg") {
+    const std::lock_guard lock(guard_);
+    auto picture = camera_ ? camera_->preview() : std::nullopt;
+    if (!picture) return std::nullopt;
+    return Document{"image/jpeg", std::move(*picture)};
   }
   if (!take(path, "/documents/reconcile/")) return std::nullopt;
   const std::size_t slash = path.find('/');

@@ -1,5 +1,5 @@
 #pragma once
-// The laboratory behind the trainer's page: reconcile, guided calibration of the forceps, analysis of recordings. Called by the server's
+// The laboratory behind the trainer's page: reconcile, guided calibration of the forceps and of a camera, analysis of recordings. Called by the server's
 // thread; whatever takes longer than a blink runs in a thread of its own and is asked for again. Test: tests/cli/trainer_lab_test.cpp.
 
 #include <atomic>
@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "cli/calibration_session.h"
+#include "cli/camera_session.h"
 #include "cli/reconcile_job.h"
 #include "server/server.h"
 
@@ -25,6 +26,8 @@ struct LabOptions {
   std::string folder;        // for reports and calibrations
   std::string serial_port;   // of the forceps, empty: none
   std::string calibration;   // in use, empty: as built
+  std::string camera;        // a video instead of a camera, empty: the page names a camera's number
+  std::string camera_program;  // path of filum_camera, empty: not built
 };
 
 class TrainerLab {
@@ -48,6 +51,8 @@ class TrainerLab {
     std::string state = "working", text;  // the page, or why there is none
   };
   nlohmann::ordered_json calibration_status() const;
+  nlohmann::ordered_json camera_status() const;
+  nlohmann::ordered_json change_camera(std::string_view what, const std::string& body);
   nlohmann::ordered_json change(std::string_view path, const std::string& body);
   std::optional<std::string> analysis(const std::string& session, const std::string& clamped);
   void analyse_in_background(const std::string& key, const std::string& file, const std::string& clamped);
@@ -58,6 +63,7 @@ class TrainerLab {
   mutable std::mutex guard_;
   std::unique_ptr<CalibrationSession> calibration_;  // guarded
   std::string chosen_;                               // guarded
+  std::unique_ptr<CameraSession> camera_;            // guarded
   std::map<std::string, Analysis> analyses_;         // guarded, by "session" or "session/clamped"
   bool analysing_ = false;                           // guarded
   std::thread analyst_;

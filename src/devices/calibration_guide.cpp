@@ -32,6 +32,15 @@ void CalibrationGuide::begin() {
   counts_.clear();
 }
 
+void CalibrationGuide::undo() {
+  if (!reading_ && at_ > 0) {
+    --at_;
+    points_.pop_back();
+  }
+  reading_ = false;
+  counts_.clear();
+}
+
 void CalibrationGuide::take(const DeviceSample& sample) {
   if (!reading_) return;
   const bool angle = channel_ == Channel::angle;
@@ -46,6 +55,7 @@ void CalibrationGuide::take(const DeviceSample& sample) {
   point.noise = std::sqrt(square / static_cast<double>(counts_.size() - 1));
   points_.push_back(point);
   reading_ = false;
+  counts_.clear();
 }
 
 }  // namespace filum

@@ -29,6 +29,10 @@ class CalibrationGuide {
   void take(const DeviceSample& sample);
   /// Reading could not be used (broken wire, silence): ask for the same value again.
   void again() { reading_ = false; }
+  /// Takes the last value back, so that it is asked for again; first of all a reading under way.
+  void undo();
+  /// Of the samples that a reading takes, 0 to 1.
+  double progress() const { return static_cast<double>(counts_.size()) / static_cast<double>(kSamples); }
 
   const std::vector<CalibrationPoint>& points() const { return points_; }
 

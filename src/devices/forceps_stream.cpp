@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "devices/sample_faults.h"
+
 namespace filum {
 namespace {
 
@@ -24,6 +26,11 @@ DeviceSample blank(int tool, std::uint32_t sequence, std::int64_t device_us, std
 std::uint32_t buttons_of(std::uint8_t flags) noexcept {
   return ((flags & FILUM_PEDAL) ? 1u : 0u) | ((flags & FILUM_BUTTON_CUT) ? 2u : 0u) |
          ((flags & FILUM_BUTTON_NEXT) ? 4u : 0u);
+}
+
+std::uint32_t faults_of(std::uint8_t flags) noexcept {
+  return ((flags & FILUM_ANGLE_SATURATED) ? kAngleSaturated : 0u) | ((flags & FILUM_FORCE_SATURATED) ? kForceSaturated : 0u) |
+         ((flags & FILUM_ANGLE_BROKEN) ? kAngleBroken : 0u) | ((flags & FILUM_FORCE_BROKEN) ? kForceBroken : 0u);
 }
 
 }  // namespace
@@ -152,6 +159,7 @@ void ForcepsStream::on_grip(const Source& from, const filum_grip& grip, std::int
   if (sample.has_grip_angle) sample.grip_angle = calibration_.angle(grip.angle);
   if (sample.has_grip_force) sample.grip_force = calibration_.force(grip.force);
   sample.buttons = buttons_[grip.tool] = buttons_of(grip.flags);
+  sample.buttons |= faults_of(grip.flags);
   out.push_back(sample);
   ++received_;
 }

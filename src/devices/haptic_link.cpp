@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <numbers>
 
@@ -22,6 +23,14 @@ constexpr int kPerPoll = 64;          // packets; three tools at 1 kHz are three
 
 std::int32_t whole(double value) noexcept {
   return static_cast<std::int32_t>(std::lround(std::clamp(value, -2.1e9, 2.1e9)));
+}
+
+/// -1 if the address or the port cannot be had.
+int bound_socket(const sockaddr_in& here) noexcept {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd >= 0 && ::bind(fd, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0) return fd;
+  if (fd >= 0) ::close(fd);
+  return -1;
 }
 
 }  // namespace
@@ -64,21 +73,31 @@ HapticLink::HapticLink(const std::string& address, int port) {
   here.sin_port = htons(static_cast<std::uint16_t>(port));
   if (inet_pton(AF_INET, address.c_str(), &here.sin_addr) != 1)
     throw InputError("haptic link", "address", address, "an IPv4 address of this machine, e.g. 127.0.0.1");
-  fd_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (fd_ < 0 || ::bind(fd_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) {
-    if (fd_ >= 0) ::close(fd_);
-    throw InputError("haptic link", "address", address + ":" + std::to_string(port), "an address of this machine and a port that is free");
+  fd_ = bound_socket(here);
+  if (fd_ >= 0 && port == 0) {  // a port that was not asked for by its number is lost when a peer is let go: ask for it
+    socklen_t size = sizeof here;
+    ::getsockname(fd_, reinterpret_cast<sockaddr*>(&here), &size);
+    ::close(fd_);
+    fd_ = bound_socket(here);
   }
-  socklen_t size = sizeof here;
-  ::getsockname(fd_, reinterpret_cast<sockaddr*>(&here), &size);
+  if (fd_ < 0)
+    throw InputError("haptic link", "address", address + ":" + std::to_string(port), "an address of this machine and a port that is free");
   port_ = ntohs(here.sin_port);
   name_ = "haptic link " + address + ":" + std::to_string(port_);
 }
 
 HapticLink::~HapticLink() { ::close(fd_); }
 
+/// While there is a peer the system itself throws away what others send: a flood of strangers costs the loop nothing.
+void HapticLink::listen_to(const sockaddr_in* peer) noexcept {
+  sockaddr_in nobody{};
+  nobody.sin_family = AF_UNSPEC;
+  ::connect(fd_, reinterpret_cast<const sockaddr*>(peer ? peer : &nobody), sizeof nobody);
+}
+
 void HapticLink::release() noexcept {
   has_peer_ = false;
+  listen_to(nullptr);
   for (Hand& hand : hands_) hand = Hand{};
 }
 
@@ -90,6 +109,7 @@ bool HapticLink::is_peer(const sockaddr_in& from, const filum_link_pose& pose, s
     peer_port_ = from.sin_port;
     session_ = pose.session;
     heard_us_ = now_us;
+    listen_to(&from);
     return true;
   }
   return from.sin_addr.s_addr == peer_address_ && from.sin_port == peer_port_ && pose.session == session_;
@@ -103,7 +123,8 @@ void HapticLink::poll(std::int64_t now_us, std::vector<DeviceSample>& out) noexc
     sockaddr_in from{};
     socklen_t size = sizeof from;
     const ssize_t got = ::recvfrom(fd_, data, sizeof data, 0, reinterpret_cast<sockaddr*>(&from), &size);
-    if (got < 0) return;  // nothing more
+    if (got < 0 && errno == ECONNREFUSED) continue;  // a force came back: nobody is there any more
+    if (got < 0) return;                             // nothing more
     filum_link_pose pose;
     if (!filum_link_get_pose(data, static_cast<std::size_t>(got), &pose)) {
       ++counts_.malformed;

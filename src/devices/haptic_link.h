@@ -17,7 +17,7 @@ namespace filum {
 
 struct LinkCounts {
   std::uint64_t malformed = 0;    // not a whole, undamaged packet
-  std::uint64_t strangers = 0;    // another address, or another session than the one that runs
+  std::uint64_t strangers = 0;    // another session than the one that runs; another address, as far as it was not thrown away before
   std::uint64_t late = 0;         // older than what is known: delayed or replayed
   std::uint64_t impossible = 0;   // out of reach, not a rotation, not an opening
   std::uint64_t floods = 0;       // polls that ended with packets left in the queue
@@ -53,6 +53,7 @@ class HapticLink final : public Device {
   };
   void take(const filum_link_pose& pose, std::int64_t now_us, std::vector<DeviceSample>& out) noexcept;
   bool is_peer(const sockaddr_in& from, const filum_link_pose& pose, std::int64_t now_us) noexcept;
+  void listen_to(const sockaddr_in* peer) noexcept;
   void release() noexcept;
 
   std::string name_;

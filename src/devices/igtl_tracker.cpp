@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::int64_t kTryEvery = 1'000'000;  // [us]
 constexpr std::int64_t kStale = 100'000;       // [us]
+constexpr int kMostRepeated = 200;             // in a row, before the peer is dropped
 
 /// 0 ... 2, -1 for a name that is no tool's.
 int tool_of(std::string_view name) noexcept {
@@ -48,6 +49,8 @@ void IgtlTracker::drop() noexcept {
   connecting_ = false;
   buffer_.clear();
   skip_ = 0;
+  newest_us_ = {};
+  repeated_in_row_ = 0;
 }
 
 void IgtlTracker::connect(std::int64_t now_us) noexcept {
@@ -134,7 +137,7 @@ bool IgtlTracker::message(std::int64_t now_us, std::vector<DeviceSample>& out) n
     case IgtlBody::poses:
       break;
   }
-  return true;
+  return repeated_in_row_ < kMostRepeated;
 }
 
 void IgtlTracker::take(const IgtlPose& pose, std::int64_t time_us, std::int64_t now_us, std::vector<DeviceSample>& out) noexcept {
@@ -147,6 +150,14 @@ void IgtlTracker::take(const IgtlPose& pose, std::int64_t time_us, std::int64_t 
     ++refused_;
     return;
   }
+  std::int64_t& newest = newest_us_[static_cast<std::size_t>(tool)];
+  if (time_us > 0 && time_us <= newest) {
+    ++repeated_;
+    ++repeated_in_row_;
+    return;
+  }
+  newest = time_us;
+  repeated_in_row_ = 0;
   DeviceSample sample;
   sample.tool = tool;
   sample.sequence = sequence_++;
@@ -163,7 +174,7 @@ void IgtlTracker::take(const IgtlPose& pose, std::int64_t time_us, std::int64_t 
 DeviceHealth IgtlTracker::health() const noexcept {
   DeviceState state = DeviceState::waiting;
   if (ever_) state = fd_ < 0 || connecting_ ? DeviceState::lost : now_us_ - heard_us_ > kStale ? DeviceState::stale : DeviceState::live;
-  return {state, received_, 0, damaged_, refused_};
+  return {state, received_, 0, damaged_, refused_ + repeated_};
 }
 
 }  // namespace filum

@@ -1,6 +1,7 @@
 #include "haptics/input_merge.h"
 
 #include "devices/sample_check.h"
+#include "devices/sample_faults.h"
 
 namespace filum {
 namespace {
@@ -24,7 +25,7 @@ void InputMerge::take(const DeviceSample& sample, int source, std::int64_t stale
     tool.measures_angle = true;
   }
   if (sample.has_grip_force) put(tool.force, sample.grip_force);
-  put(tool.buttons[static_cast<std::size_t>(source)], sample.buttons);
+  put(tool.buttons[static_cast<std::size_t>(source)], sample.buttons & kButtonBits);
 }
 
 void InputMerge::drop(int source) noexcept {

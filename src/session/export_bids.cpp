@@ -37,7 +37,7 @@ constexpr std::array<Channel, 8> kPoseChannels = {{{"time", "n/a", "LATENCY", "s
                                                    {"tip_quat_z", "quat_z", "ORNT", "n/a"},
                                                    {"tip_quat_w", "quat_w", "ORNT", "n/a"}}};
 constexpr std::array<Channel, 2> kGripChannels = {{{"grip_angle", "n/a", "MISC", "rad"}, {"grip_force", "n/a", "MISC", "N"}}};
-constexpr std::array<Channel, 2> kRawChannels = {{{"raw_angle", "n/a", "MISC", "n/a"}, {"raw_force", "n/a", "MISC", "n/a"}}};
+constexpr std::array<Channel, 3> kRawChannels = {{{"raw_angle", "n/a", "MISC", "n/a"}, {"raw_force", "n/a", "MISC", "n/a"}, {"flags", "n/a", "MISC", "n/a"}}};
 
 /// Labels are letters and digits only.
 std::string label(const std::string& text, const std::string& otherwise) {
@@ -125,7 +125,7 @@ void write_channels(const Names& names, const std::string& system, const std::st
 
 void write_sidecar(const Names& names, const std::string& system, const RecordingMeta& meta, const Rate& rate, bool hand,
                    std::vector<std::string>& written) {
-  const int misc = hand ? 4 : 2;
+  const int misc = hand ? 5 : 2;
   const Json json = {{"TaskName", meta.task},
                      {"TaskDescription", "Task of the microsurgery trainer Filum"},
                      {"TrackingSystemName", system},
@@ -170,6 +170,7 @@ void write_hand(const RecordingReader& recording, const Names& names, int tool, 
       cells.push_back(s.has_grip_force ? s.grip_force : kAbsent);
       cells.push_back(s.raw_angle);
       cells.push_back(s.raw_force);
+      cells.push_back(s.buttons);
       *out << row_of(cells);
     }
     if (!out) return;
@@ -236,7 +237,8 @@ void write_dataset(const Names& names, const RecordingMeta& meta, std::vector<st
       << "Recordings of a microsurgery trainer. Tracking systems hand0, hand1, ... are the readings of the devices in the\n"
          "hand's space, times in their LATENCY channel, nothing filled in; scene0, scene1, ... are the poses commanded in the\n"
          "simulated scene after clutch and motion scaling. The origin of both is the middle of the field, x to the right, y\n"
-         "away from the trainee, z up; rotations are right-handed quaternions. grip_force is in newton, raw_angle and raw_force are the converter's counts.\n";
+         "away from the trainee, z up; rotations are right-handed quaternions. grip_force is in newton, raw_angle and raw_force are the converter's counts;\n"
+         "flags is a bit set: 1 clutch, 2 cut, 4 next, 256 angle saturated, 512 force saturated, 1024 and 2048 their wires broken.\n";
   add_row(names.root / "participants.tsv", "participant_id\tcode", names.subject + "\t" + (meta.participant.empty() ? "n/a" : meta.participant), written);
   TextOut(names.root / "participants.json", written)
       << Json({{"code", {{"Description", "Code of the participant in the trainer; never a name"}}}}).dump(2) + "\n";

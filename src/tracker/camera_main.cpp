@@ -1,30 +1,41 @@
 // filum_camera: markers seen by a camera or in a video to poses by OpenIGTLink; markers to print; camera calibration.
 //   filum_camera sheet --out markers.svg [--side 12]
 //   filum_camera calibrate --pictures FOLDER --square 10 --out camera.yaml
-//   filum_camera track --camera camera.yaml --source 0|VIDEO [--port 18944] [--side 12]
-// Tool N carries marker N; the pose sent is the marker's, in the camera's frame.
+//   filum_camera guide --source 0|VIDEO --folder FOLDER [--square 10]        (what the trainer's page Laboratory runs)
+//   filum_camera pivot --camera camera.yaml --source 0|VIDEO --tool 0        (the tip in the marker's frame)
+//   filum_camera track --camera camera.yaml --source 0|VIDEO [--field] [--tip0 X,Y,Z] [--log FILE] [--port 18944] [--side 12]
+// Tool N carries marker N; the pose sent is that of the tip, in the frame of marker 3 on the table (--field) or the camera's.
 #include <CLI/CLI.hpp>
-#include <chrono>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
+#include <optional>
 
 #include "base/error.h"
 #include "devices/igtl_stream.h"
+#include "tracker/field_frame.h"
+#include "tracker/guide_program.h"
 #include "tracker/marker_sheet.h"
 #include "tracker/marker_tracker.h"
+#include "tracker/picture_source.h"
+#include "tracker/pose_log.h"
 
 namespace {
 
 using namespace filum;
 
+constexpr int kFieldMarker = 3;  // flat on the table, x to the right, y away from the trainee
+
 struct Options {
-  std::string out, pictures, camera, source = "0";
-  double side = 12.0, square = 10.0;  // [mm]
-  int port = 18944;
+  std::string out, pictures, camera, source = "0", log;
+  double side = 12.0, square = 10.0;      // [mm]
+  std::array<std::vector<double>, 3> tips{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};  // [mm], jaw tip in its marker's frame
+  int port = 18944, tool = 0;
+  bool field = false;
+  GuideOptions guide;
 };
 
 void write(const std::string& path, const std::string& text) {
@@ -52,27 +63,67 @@ int calibrate(const Options& o) {
   return 0;
 }
 
+MarkerTracker tracker_of(const Options& o) {
+  MarkerOptions options;
+  for (int tool = 0; tool < 3; ++tool) {
+    const std::vector<double>& tip = o.tips[static_cast<std::size_t>(tool)];
+    options.mounts[tool] = {tool, 1e-3 * o.side, {1e-3 * Vec3(tip[0], tip[1], tip[2]), Quat::Identity()}};
+  }
+  options.mounts[kFieldMarker] = {kFieldMarker, 1e-3 * o.side, {}};
+  return {CameraModel::load(o.camera), options};
+}
+
+/// Reads a picture and refuses one of another size than the camera's calibration.
+bool next_picture(PictureSource& source, const CameraModel& camera, cv::Mat& grey) {
+  if (!source.read(grey)) return false;
+  if (grey.cols != camera.width || grey.rows != camera.height)
+    throw InputError("--camera", "size", std::to_string(grey.cols) + " x " + std::to_string(grey.rows), "pictures of the size of the calibration");
+  return true;
+}
+
+void print_counts(const MarkerCounts& n) {
+  const auto number = [](std::uint64_t k) { return static_cast<unsigned long long>(k); };
+  std::printf("%llu pictures, %llu poses, %llu ambiguous, %llu poor, %llu covered, %llu blurred, %llu unknown markers\n", number(n.frames), number(n.poses),
+              number(n.ambiguous), number(n.poor), number(n.covered), number(n.blurred), number(n.unknown));
+}
+
 int track(const Options& o) {
   const CameraModel camera = CameraModel::load(o.camera);
-  MarkerOptions options;
-  for (int tool = 0; tool < 3; ++tool) options.mounts[tool] = {tool, 1e-3 * o.side, {}};
-  MarkerTracker tracker(camera, options);
-  cv::VideoCapture capture;
-  const bool number = o.source.find_first_not_of("0123456789") == std::string::npos && o.source.size() < 4;
-  if (!(number ? capture.open(std::stoi(o.source)) : capture.open(o.source))) throw InputError("--source", "camera", o.source, "a camera's number or a video");
+  MarkerTracker tracker = tracker_of(o);
+  PictureSource source(o.source);
   IgtlStream stream("127.0.0.1", o.port);
-  const auto start = std::chrono::steady_clock::now();
-  for (cv::Mat frame, grey; capture.read(frame);) {
-    if (frame.cols != camera.width || frame.rows != camera.height)
-      throw InputError("--camera", "size", std::to_string(frame.cols) + " x " + std::to_string(frame.rows), "pictures of the size of the calibration");
-    cv::cvtColor(frame, grey, cv::COLOR_BGR2GRAY);
-    const auto us = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start).count();
-    for (const MarkerPose& pose : tracker.find(grey)) stream.send(pose.tool, pose.X_CT, us);
+  std::optional<PoseLog> log;
+  if (!o.log.empty()) log.emplace(o.log);
+  FieldFrame field;
+  for (cv::Mat grey; next_picture(source, camera, grey);) {
+    const std::vector<MarkerPose> seen = tracker.find(grey);
+    for (const MarkerPose& pose : seen)
+      if (pose.tool == kFieldMarker) field.take(pose.X_CT);
+    if (o.field && !field.X_WC()) continue;
+    for (const MarkerPose& pose : seen) {
+      if (pose.tool == kFieldMarker) continue;
+      const Pose X = o.field ? *field.X_WC() * pose.X_CT : pose.X_CT;
+      stream.send(pose.tool, X, static_cast<std::int64_t>(1e6 * source.seconds()));
+      if (log) log->add(source.seconds(), pose, X);
+    }
   }
-  const MarkerCounts& n = tracker.counts();
-  std::printf("%llu pictures, %llu poses, %llu ambiguous, %llu poor, %llu unknown markers\n", static_cast<unsigned long long>(n.frames),
-              static_cast<unsigned long long>(n.poses), static_cast<unsigned long long>(n.ambiguous), static_cast<unsigned long long>(n.poor),
-              static_cast<unsigned long long>(n.unknown));
+  print_counts(tracker.counts());
+  if (o.field) std::printf("field: spread of its marker %.2f mm, measured again %d times\n", 1e3 * field.spread(), field.times_lost());
+  return 0;
+}
+
+/// Tip of a tool in its marker's frame.
+int pivot(const Options& o) {
+  const CameraModel camera = CameraModel::load(o.camera);
+  MarkerTracker tracker = tracker_of(o);
+  PictureSource source(o.source);
+  std::vector<Pose> poses;
+  for (cv::Mat grey; poses.size() < 300 && next_picture(source, camera, grey);)
+    for (const MarkerPose& pose : tracker.find(grey))
+      if (pose.tool == o.tool) poses.push_back(pose.X_CT);
+  const Pivot p = pivot_of(poses);
+  std::printf("--tip%d %.3f,%.3f,%.3f   (mm in the marker's frame; residual %.2f mm rms from %zu poses, turned by %.0f deg)\n", o.tool, 1e3 * p.tip.x(), 1e3 * p.tip.y(),
+              1e3 * p.tip.z(), 1e3 * p.residual, poses.size(), p.turned * 180.0 / std::numbers::pi);
   return 0;
 }
 
@@ -90,15 +141,30 @@ int main(int argc, char** argv) {
   calibration->add_option("--square", o.square, "Side of a square [mm]")->check(CLI::Range(1.0, 200.0));
   calibration->add_option("--out", o.out)->required();
   auto* tracking = app.add_subcommand("track", "Poses of the markers by OpenIGTLink, from 127.0.0.1");
-  tracking->add_option("--camera", o.camera, "Calibration")->required();
-  tracking->add_option("--source", o.source, "Number of a camera, or a video");
   tracking->add_option("--port", o.port)->check(CLI::Range(1, 65535));
-  tracking->add_option("--side", o.side, "Side of a marker [mm]")->check(CLI::Range(3.0, 100.0));
+  tracking->add_flag("--field", o.field, "Poses in the frame of marker 3 on the table instead of the camera's");
+  tracking->add_option("--log", o.log, "Write poses and covariances to this new CSV file");
+  auto* tipping = app.add_subcommand("pivot", "Tip of a tool in its marker's frame: turn the handle while the tip rests in a hollow");
+  tipping->add_option("--tool", o.tool)->check(CLI::Range(0, 2));
+  for (CLI::App* sub : {tracking, tipping}) {
+    sub->add_option("--camera", o.camera, "Calibration")->required();
+    sub->add_option("--source", o.source, "Number of a camera, or a video");
+    sub->add_option("--side", o.side, "Side of a marker [mm]")->check(CLI::Range(3.0, 100.0));
+  }
+  for (std::size_t tool = 0; tool < o.tips.size(); ++tool)
+    tracking->add_option("--tip" + std::to_string(tool), o.tips[tool], "Its jaw tip in the marker's frame [mm], as `pivot` prints it")->delimiter(',')->expected(3)->check(CLI::Range(-300.0, 300.0));
+  auto* guiding = app.add_subcommand("guide", "Guided calibration: commands in, states out (see guide_program.h)");
+  guiding->add_option("--source", o.guide.source, "Number of a camera, or a video");
+  guiding->add_option("--folder", o.guide.folder, "For the preview and the calibration")->required();
+  guiding->add_option("--name", o.guide.camera, "Name of the camera");
+  guiding->add_option("--square", o.guide.square, "Side of a square [mm]")->check(CLI::Range(1.0, 200.0));
   CLI11_PARSE(app, argc, argv);
   try {
     if (sheet->parsed()) write(o.out, marker_sheet_svg({0, 1, 2, 3}, o.side));
     if (calibration->parsed()) return calibrate(o);
     if (tracking->parsed()) return track(o);
+    if (tipping->parsed()) return pivot(o);
+    if (guiding->parsed()) return run_guide(o.guide);
     return 0;
   } catch (const InputError& error) {
     std::fprintf(stderr, "filum_camera: %s\n", error.what());

@@ -1,5 +1,6 @@
 #include "tracker/camera_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <opencv2/calib3d.hpp>
@@ -29,6 +30,14 @@ CameraModel read(const YamlNode& file) {
   std::copy(d.begin(), d.end(), c.distortion.begin());
   c.residual = file.number("residual", Range::not_negative());
   c.views = file.integer("views", 0, 100000);
+  c.camera = file.text_or("camera", "");
+  c.date = file.text_or("date", "");
+  c.coverage = file.number_or("coverage", 0.0, Range::between(0.0, 1.0));
+  if (file.has("uncertainty")) {
+    const std::vector<double> u = file.quantities("uncertainty", "-", Range::not_negative());
+    if (u.size() != c.uncertainty.size()) file.refuse("uncertainty", "four numbers: of fx, fy, cx, cy");
+    std::copy(u.begin(), u.end(), c.uncertainty.begin());
+  }
   file.finish();
   return c;
 }
@@ -60,44 +69,85 @@ CameraModel CameraModel::load(const std::string& path) { return read(YamlNode::l
 CameraModel CameraModel::parse(const std::string& text, const std::string& file_name) { return read(YamlNode::parse(text, file_name)); }
 
 std::string CameraModel::text() const {
-  char out[600];
+  char out[900];
   std::snprintf(out, sizeof out,
                 "format: filum-camera/1\nwidth: %d\nheight: %d\nfx: %.9g\nfy: %.9g\ncx: %.9g\ncy: %.9g\n"
-                "distortion: [%.9g, %.9g, %.9g, %.9g, %.9g]\nresidual: %.6g\nviews: %d\n",
-                width, height, fx, fy, cx, cy, distortion[0], distortion[1], distortion[2], distortion[3], distortion[4], residual, views);
-  return out;
+                "distortion: [%.9g, %.9g, %.9g, %.9g, %.9g]\nresidual: %.6g\nviews: %d\ncoverage: %.3g\nuncertainty: [%.4g, %.4g, %.4g, %.4g]\n",
+                width, height, fx, fy, cx, cy, distortion[0], distortion[1], distortion[2], distortion[3], distortion[4], residual, views, coverage,
+                uncertainty[0], uncertainty[1], uncertainty[2], uncertainty[3]);
+  std::string words;
+  for (const auto& [key, value] : {std::pair{"camera", camera}, {"date", date}}) {
+    std::string quoted;
+    for (const char c : value)
+      if (c >= ' ' && c != '"' && c != '\\') quoted += c;
+    if (!quoted.empty()) words += std::string(key) + ": \"" + quoted + "\"\n";
+  }
+  return out + words;
 }
 
-CameraModel calibrate_camera(const std::vector<cv::Mat>& pictures, const ChessBoard& board) {
-  std::vector<std::vector<cv::Point2f>> seen;
-  const cv::Size pattern(board.columns, board.rows);
-  for (const cv::Mat& picture : pictures) {
-    std::vector<cv::Point2f> corners;
-    if (picture.size() != pictures.front().size() || !cv::findChessboardCorners(picture, pattern, corners)) continue;
-    cv::cornerSubPix(picture, corners, {5, 5}, {-1, -1}, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 1e-3});
-    seen.push_back(corners);
+std::vector<cv::Point2f> find_board(const cv::Mat& grey, const ChessBoard& board) {
+  constexpr int kAcross = 960;
+  const double scale = std::min(1.0, static_cast<double>(kAcross) / grey.cols);
+  cv::Mat small = grey;
+  if (scale < 1.0) cv::resize(grey, small, {}, scale, scale, cv::INTER_AREA);
+  std::vector<cv::Point2f> corners;
+  const int flags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
+  if (!cv::findChessboardCorners(small, {board.columns, board.rows}, corners, flags)) return {};
+  for (cv::Point2f& c : corners) {  // the middles of pixels are whole numbers in both
+    c.x = static_cast<float>((c.x + 0.5) / scale - 0.5);
+    c.y = static_cast<float>((c.y + 0.5) / scale - 0.5);
   }
-  const std::string found = std::to_string(seen.size()) + " of " + std::to_string(pictures.size()) + " pictures";
-  if (static_cast<int>(seen.size()) < kViews)
-    throw InputError("camera calibration", "pictures", found + " show the whole board", "at least " + std::to_string(kViews));
-  const std::vector<std::vector<cv::Point3f>> points(seen.size(), board_points(board));
-  cv::Mat matrix, distortion;
+  cv::cornerSubPix(grey, corners, {5, 5}, {-1, -1}, {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 40, 1e-3});
+  return corners;
+}
+
+std::vector<bool> covered_cells(const std::vector<std::vector<cv::Point2f>>& views, const cv::Size& picture) {
+  std::vector<bool> cells(static_cast<std::size_t>(kCellColumns * kCellRows), false);
+  for (const auto& view : views)
+    for (const cv::Point2f& p : view) {
+      const int column = std::clamp(static_cast<int>(p.x * kCellColumns / static_cast<float>(picture.width)), 0, kCellColumns - 1);
+      const int row = std::clamp(static_cast<int>(p.y * kCellRows / static_cast<float>(picture.height)), 0, kCellRows - 1);
+      cells[static_cast<std::size_t>(row * kCellColumns + column)] = true;
+    }
+  return cells;
+}
+
+CameraModel calibrate_views(const std::vector<std::vector<cv::Point2f>>& views, const cv::Size& picture, const ChessBoard& board) {
+  if (static_cast<int>(views.size()) < kViews)
+    throw InputError("camera calibration", "views", std::to_string(views.size()) + " of the whole board", "at least " + std::to_string(kViews));
+  const std::vector<std::vector<cv::Point3f>> points(views.size(), board_points(board));
+  cv::Mat matrix, distortion, deviations, unused;
   std::vector<cv::Mat> rotations, translations;
   CameraModel c;
-  c.residual = cv::calibrateCamera(points, seen, pictures.front().size(), matrix, distortion, rotations, translations);
+  c.residual = cv::calibrateCamera(points, views, picture, matrix, distortion, rotations, translations, deviations, unused, unused);
   if (tilt_spread(rotations) < kTilt)
     throw InputError("camera calibration", "pictures", "the board is seen from nearly the same side in all", "views tilted by at least 20 deg");
   if (!(c.residual < kResidual))
     throw InputError("camera calibration", "residual", std::to_string(c.residual) + " px", "below 1 px: sharp pictures of a flat board");
-  c.width = pictures.front().cols;
-  c.height = pictures.front().rows;
+  c.width = picture.width;
+  c.height = picture.height;
   c.fx = matrix.at<double>(0, 0);
   c.fy = matrix.at<double>(1, 1);
   c.cx = matrix.at<double>(0, 2);
   c.cy = matrix.at<double>(1, 2);
   for (int i = 0; i < 5; ++i) c.distortion[static_cast<std::size_t>(i)] = distortion.at<double>(i);
-  c.views = static_cast<int>(seen.size());
+  for (int i = 0; i < 4; ++i) c.uncertainty[static_cast<std::size_t>(i)] = deviations.at<double>(i);
+  c.views = static_cast<int>(views.size());
+  const std::vector<bool> cells = covered_cells(views, picture);
+  c.coverage = static_cast<double>(std::count(cells.begin(), cells.end(), true)) / static_cast<double>(cells.size());
   return c;
+}
+
+CameraModel calibrate_camera(const std::vector<cv::Mat>& pictures, const ChessBoard& board) {
+  std::vector<std::vector<cv::Point2f>> views;
+  for (const cv::Mat& picture : pictures) {
+    if (picture.size() != pictures.front().size()) continue;
+    auto corners = find_board(picture, board);
+    if (!corners.empty()) views.push_back(std::move(corners));
+  }
+  if (static_cast<int>(views.size()) < kViews)
+    throw InputError("camera calibration", "pictures", std::to_string(views.size()) + " of " + std::to_string(pictures.size()) + " pictures show the whole board", "at least " + std::to_string(kViews));
+  return calibrate_views(views, pictures.front().size(), board);
 }
 
 }  // namespace filum

@@ -5,6 +5,8 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
 
+#include "tracker/marker_quality.h"
+
 namespace filum {
 namespace {
 
@@ -61,6 +63,19 @@ bool MarkerTracker::pose_of(const std::vector<cv::Point2f>& corners, const Marke
   return pose.X_CT.finite() && pose.covariance.allFinite();
 }
 
+bool MarkerTracker::measurable(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, int marker) {
+  const MarkerQuality q = quality_of(grey, corners, marker);
+  if (q.edge > options_.edge) {
+    ++counts_.blurred;
+    return false;
+  }
+  if (q.likeness < options_.likeness || q.rim < options_.rim) {
+    ++counts_.covered;
+    return false;
+  }
+  return true;
+}
+
 std::vector<MarkerPose> MarkerTracker::find(const cv::Mat& grey) {
   ++counts_.frames;
   const cv::Ptr<cv::aruco::Dictionary> dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50);
@@ -79,7 +94,7 @@ std::vector<MarkerPose> MarkerTracker::find(const cv::Mat& grey) {
     MarkerPose pose;
     pose.tool = mount->second.tool;
     pose.marker = ids[k];
-    if (!pose_of(corners[k], mount->second, pose)) continue;
+    if (!pose_of(corners[k], mount->second, pose) || !measurable(grey, corners[k], ids[k])) continue;
     poses.push_back(pose);
     ++counts_.poses;
   }

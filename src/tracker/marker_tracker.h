@@ -4,7 +4,7 @@
 // covariance of first order: with J the derivative of the corners [px] by position and rotation vector and sigma the noise
 // of a corner,
 //   C = sigma^2 (J^T J)^-1.
-// A marker that is not seen gives nothing: a dropout. A flat square seen head on has two poses that fit almost equally; where
+// A marker that is not seen, partly covered or too blurred (marker_quality.h) gives nothing: a dropout. A flat square seen head on has two poses that fit almost equally; where
 // the second fits nearly as well the pose is refused. Neglects: error of the calibration and of the printed size.
 // It cannot measure tremor: see hardware/tracker/README.md. Test: marker_tracker_test.
 
@@ -28,7 +28,10 @@ struct MarkerOptions {
   std::map<int, MarkerMount> mounts;  // by marker
   double corner_noise = 0.2;          // [px], sigma
   double ambiguity = 0.6;             // refuse if the better pose's error is not below this share of the other's
-  double residual = 2.0;              // [px], rms of the corners, at most
+  double residual = 0.35;             // [px], rms of the corners, at most: a good marker has 0.15, one with a side covered 0.4 and more
+  double likeness = 0.90;             // with the printed marker, at least
+  double rim = 0.75;                  // darkest side of the white rim over the brightest, at least: a finger lies on it otherwise
+  double edge = 0.095;                // width of the edges over the side, at most: blur beyond it moves the corners
 };
 
 struct MarkerPose {
@@ -39,7 +42,7 @@ struct MarkerPose {
 };
 
 struct MarkerCounts {
-  std::uint64_t frames = 0, poses = 0, ambiguous = 0, poor = 0, unknown = 0;
+  std::uint64_t frames = 0, poses = 0, ambiguous = 0, poor = 0, unknown = 0, covered = 0, blurred = 0;
 };
 
 class MarkerTracker {
@@ -50,6 +53,7 @@ class MarkerTracker {
   const MarkerCounts& counts() const { return counts_; }
 
  private:
+  bool measurable(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, int marker);
   bool pose_of(const std::vector<cv::Point2f>& corners, const MarkerMount& mount, MarkerPose& pose);
   CameraModel camera_;
   MarkerOptions options_;

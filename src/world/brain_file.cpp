@@ -7,6 +7,7 @@
 #include "world/brain_scene.h"
 #include "world/measured_model.h"
 #include "world/model_file.h"
+#include "world/task_folder.h"
 
 namespace filum {
 namespace {
@@ -118,7 +119,7 @@ BladeShape load_blade(const std::string& path) {
 }
 
 std::shared_ptr<const Model> load_brain_scene(const std::string& root, const std::string& task, const std::string& model_file) {
-  const std::string scene_file = "curricula/" + task + "/scene.yaml";
+  const std::string scene_file = task_folder(root, task) + "/scene.yaml";
   const YamlNode scene = open_model_file(root + "/" + scene_file, kBrainScene);
   auto m = std::make_shared<Model>();
   auto brain = std::make_shared<BrainModel>();

@@ -8,6 +8,7 @@
 #include "world/measured_model.h"
 #include "world/model_file.h"
 #include "world/needle_file.h"
+#include "world/task_folder.h"
 #include "world/vessel_file.h"
 #include "world/world.h"
 
@@ -138,13 +139,12 @@ InstrumentParameters load_instrument(const std::string& path) {
 std::shared_ptr<const Model> load_model(const std::string& root, const std::string& task, const std::string& model_file) {
   if (task.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos || task.empty())
     throw InputError("command line", "task", task, "a task name such as knot-square (see `filum list`)");
-  const std::string path = root + "/curricula/" + task + "/scene.yaml";
-  if (!std::filesystem::exists(path))
-    throw InputError("command line", "task", task, "the name of a task with a scene (see `filum list`)");
+  const std::string folder = task_folder(root, task), path = root + "/" + folder + "/scene.yaml";
+  if (folder.empty()) throw InputError("command line", "task", task, "the name of a task with a scene (see `filum list`)");
   if (YamlNode::load(path).text("format") == kBrainScene) return load_brain_scene(root, task, model_file);
   auto m = std::make_shared<Model>();
   const YamlNode scene = open_model_file(path, "filum-scene/1");
-  m->sources.push_back("curricula/" + task + "/scene.yaml");
+  m->sources.push_back(folder + "/scene.yaml");
   SceneDescription& d = m->description;
   d.task = task;
   d.title = scene.text("title");

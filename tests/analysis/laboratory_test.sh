@@ -25,7 +25,8 @@ refused() {
 }
 
 "$filum" list --json >list.json
-for task in tip-hold trace grasp-transfer; do expect list.json "d.tasks.some((t) => t.name === '$task')"; done
+for task in tip-hold trace grasp-transfer; do expect list.json "d.tasks.some((t) => t.name === '$task' && t.curriculum === 'research')"; done
+expect list.json "d.curricula.includes('research')"
 
 for task in trace grasp-transfer; do
   "$filum" run "$task" --input demo --record "$task.rec" --json >"$task.json"
@@ -49,6 +50,15 @@ grep -q 'noise floor' page.html || fail "no page"
 
 "$filum" export trace.rec --format bids --out bids --json >files.json
 expect files.json "d.files.length > 10 && d.files.some((f) => f.endsWith('tracksys-hand0_motion.tsv'))"
+
+# Whatever is derived, a recording stays as it is.
+sha256sum trace.rec grasp-transfer.rec >before.sum
+"$filum" export trace.rec --format csv --out csv >/dev/null
+"$filum" export trace.rec --format hdf5 --out hdf5 >/dev/null
+"$filum" score trace.rec --json >score.json
+"$filum" analyse trace.rec --clamped trace.rec --json >analysis.json
+sha256sum --check --quiet before.sum || fail "a recording was changed by what was derived from it"
+grep -q '512 force saturated' csv/*dictionary* || fail "the dictionary does not tell the faults of a handle"
 
 # Calibration from readings: a line is fitted and used; a sensor that does not repeat is refused.
 {

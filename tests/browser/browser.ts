@@ -48,6 +48,8 @@ export async function openPage(address: string): Promise<Opened> {
 export const trainerProgram = process.env.FILUM_BIN ?? "";
 /// A handle for whoever has none, built beside the program; plays a demonstration on a pseudo terminal.
 export const feederProgram = trainerProgram ? join(dirname(resolve(kRepository, trainerProgram)), "tests", "filum_serial_feeder") : "";
+/// Pictures of a chessboard for whoever has no camera; there where OpenCV is.
+export const boardProgram = trainerProgram ? join(dirname(resolve(kRepository, trainerProgram)), "tests", "filum_board_pictures") : "";
 export const hasTrainer = trainerProgram !== "" && existsSync(resolve(kRepository, trainerProgram));
 
 export interface Trainer { address: string; folder: string; stop(): Promise<void> }

@@ -1,9 +1,10 @@
 // The laboratory's pages with the real trainer: reconcile with progress and cancel, calibration of the forceps, analysis of a session.
-import { spawn, type ChildProcess } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { execFileSync, spawn, type ChildProcess } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { feederProgram, hasTrainer, openPage, startTrainer, until, type Opened, type Trainer } from "./browser";
+import { boardProgram, feederProgram, hasTrainer, openPage, startTrainer, until, type Opened, type Trainer } from "./browser";
 
 /// A block of 2 kPa that relaxes by half in 2 s (q' = (u - q)/tau), pressed at two rates and held.
 function writeBlock(folder: string, samples: number): void {
@@ -87,24 +88,125 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
     await until(() => opened.page.textContent(".datasets"), (text) => (text ?? "").includes("no measurements yet"), "and that the folder is empty");
   });
 
-  it.skipIf(!existsSync(feederProgram))("leads through the calibration of a handle", { timeout: 300_000 }, async () => {
-    const link = join(data, "handle");
-    const feeder: ChildProcess = spawn(feederProgram, ["curricula/tip-hold/demonstration.yaml", "--link", link, "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: "ignore" });
+  it.skipIf(!existsSync(feederProgram))("leads through the whole calibration of a handle and puts it to use", { timeout: 300_000 }, async () => {
+    const link = join(data, "handle"), counts = join(data, "counts.yaml"); // whose pad rests within the amplifier's range
+    writeFileSync(counts, readFileSync(join(__dirname, "../../models/forceps/default.yaml"), "utf8").replace("zero: 100 count", "zero: 500 count"));
+    const feeder: ChildProcess = spawn(feederProgram, ["curricula/research/tip-hold/demonstration.yaml", "--calibration", counts, "--link", link, "--by-hand", "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: ["pipe", "ignore", "ignore"] });
     try {
       await until(() => existsSync(link), (there) => there, "the handle is there");
       trainer = await startTrainer("--datasets", data, "--serial", link);
       opened = await openPage(`${trainer.address}#/laboratory`);
       const { page } = opened;
+      const field = (label: string) => page.locator(`.calibration-form label:has-text("${label}") input`);
+      await field("Serial number").fill("SN-17");
+      await field("Identity").fill("42");
+      await field("Openings").fill("0, 6 12 18 x");
       await page.click("[data-step=go]");
-      await until(() => page.textContent(".instruction"), (text) => (text ?? "").includes("0 deg"), "it asks for the first opening");
-      await page.keyboard.press("Enter"); // the button keeps the focus from value to value
-      await until(() => page.textContent(".calibrate"), (text) => (text ?? "").includes("1 of 48 values"), "one value is taken");
-      expect(await page.locator(".points circle").count()).toBe(1);
-      await page.keyboard.press("Enter");
-      await until(() => page.textContent(".calibrate"), (text) => (text ?? "").includes("2 of 48 values"), "and the next");
-      await page.click("[data-step=stop]");
-      await until(() => page.textContent(".calibrate"), (text) => (text ?? "").includes("Start calibration"), "it can be left");
+      await until(() => page.textContent(".calibrate .trouble"), (text) => (text ?? "").includes("numbers"), "letters are no openings");
+      await field("Openings").fill("0, 6, 12, 18, 24");
+      await field("Loads").fill("0, 0.5, 1, 2, 3");
+      await page.click("[data-step=go]");
+      const taken = (n: number) => until(() => page.textContent(".calibrate"), (text) => (text ?? "").includes(`${n} of 40 values`), `${n} values are taken`);
+      const ways = (values: number[]) => [...values, ...values.slice().reverse()];
+      const plan: [number, number][] = [];
+      for (let k = 0; k < 2; ++k) for (const angle of ways([0, 6, 12, 18, 24])) plan.push([angle, 0]);
+      for (let k = 0; k < 2; ++k) for (const force of ways([0, 0.5, 1, 2, 3])) plan.push([3, force]);
+      await taken(0);
+      for (let k = 0; k < plan.length; ++k) {
+        feeder.stdin!.write(`${plan[k][0]} ${plan[k][1]}\n`);
+        await until(() => page.textContent(".instruction"), (text) => /(Set the opening|Load the pad)/.test(text ?? ""), "it asks for a value");
+        if (k === 3) { // one is read by mistake and taken back, by keyboard
+          expect(await page.textContent(".instruction")).toContain("18 deg");
+          await page.keyboard.press("Backspace");
+          await taken(2);
+          feeder.stdin!.write("12 0\n");
+          await page.waitForTimeout(150);
+          await page.keyboard.press("Enter");
+          await taken(3);
+          feeder.stdin!.write(`${plan[k][0]} ${plan[k][1]}\n`);
+        }
+        await page.waitForTimeout(150); // the handle has moved
+        if (k === 0) await page.focus("[data-step=go]");
+        await page.keyboard.press("Enter"); // the button keeps the focus from value to value
+        if (k < plan.length - 1) await taken(k + 1);
+        if (k === 0) expect(await page.textContent(".live-count")).toContain("counts now");
+      }
+      await until(() => page.textContent(".instruction"), (text) => (text ?? "").includes("accepted"), "the calibration is accepted");
+      expect(await page.textContent(".fits")).toContain("angle [deg]");
+      expect(await page.locator(".points circle").count()).toBe(40);
+      expect(await page.locator(".points .fit").count()).toBe(2);
+      await page.click("[data-step=go]");
+      await until(() => page.textContent(".calibrate"), (text) => /In use: .*forceps-\d+-\d+\.yaml/.test(text ?? ""), "it is in use");
+      const [file] = readdirSync(join(trainer.folder, "calibrations")), text = readFileSync(join(trainer.folder, "calibrations", file), "utf8");
+      for (const line of ['sensor: "SN-17"', "identity: 42", "hysteresis:", "residual:", "upwards: false"]) expect(text).toContain(line);
       expect(opened.trouble).toEqual([]);
     } finally { feeder.kill("SIGTERM"); }
   });
+
+  it.skipIf(!existsSync(boardProgram))("leads through the calibration of a camera, shows what is covered and writes the result", { timeout: 300_000 }, async () => {
+    execFileSync(boardProgram, [data]);
+    trainer = await startTrainer("--datasets", data, "--camera", join(data, "view_%03d.png"));
+    opened = await openPage(`${trainer.address}#/laboratory`);
+    const { page } = opened;
+    await page.fill(".camera label:has-text('Name') input", "field camera");
+    await page.click("[data-camera=start]");
+    await page.waitForSelector(".camera .preview");
+    await until(() => page.locator(".camera .preview").evaluate((image) => (image as HTMLImageElement).naturalWidth), (width) => width === 480, "the camera's picture is shown");
+    await until(() => page.locator(".camera .wishes li").count(), (count) => count === 15, "what is wanted is listed");
+    await page.click("[data-camera=calibrate]");
+    await until(() => page.textContent(".camera"), (text) => /expected|wanted|calibrated/.test(text ?? ""), "too early is refused with what is missing");
+    await until(() => page.locator(".camera .wishes .granted").count(), (count) => count === 15, "everything is covered");
+    await page.click("[data-camera=calibrate]");
+    await until(() => page.textContent(".camera"), (text) => (text ?? "").includes("The camera is calibrated"), "it calibrates");
+    expect(await page.textContent(".camera table")).toMatch(/px rms over 1\d views/);
+    const [file] = readdirSync(join(trainer.folder, "calibrations")).filter((name) => name.endsWith(".yaml")), text = readFileSync(join(trainer.folder, "calibrations", file), "utf8");
+    expect(text).toContain('camera: "field camera"');
+    expect(Number(/fx: (.*)/.exec(text)![1])).toBeGreaterThan(655);
+    expect(Number(/fx: (.*)/.exec(text)![1])).toBeLessThan(680);
+    await page.click("[data-camera=stop]");
+    await page.waitForSelector("[data-camera=start]");
+    expect(opened.trouble).toEqual([]);
+  });
+
+  it("moves the tools by a tracker on the line while the browser shows them", { timeout: 300_000 }, async () => {
+    const tracker = createServer((socket) => { // OpenIGTLink: one pose every 10 ms, drawing a circle
+      socket.on("error", () => undefined);
+      let k = 0;
+      const timer = setInterval(() => socket.write(transform("Tool0", [4 * Math.cos(0.05 * k), 4 * Math.sin(0.05 * k++), 6])), 10);
+      socket.on("close", () => clearInterval(timer));
+    });
+    await new Promise<void>((done) => tracker.listen(0, "127.0.0.1", done));
+    try {
+      trainer = await startTrainer("--datasets", data, "--hands", `igtl:${(tracker.address() as { port: number }).port}`);
+      opened = await openPage(trainer.address);
+      const { page } = opened;
+      await page.click('button[data-task="trace"]');
+      await page.check("input[value=device]");
+      await page.click("button[type=submit]");
+      const tip = () => opened.frame()?.tools[0].pose.position ?? [0, 0, 0];
+      await until(opened.frame, (frame) => frame !== undefined && frame.time > 1, "the session runs");
+      await until(tip, (p) => p[0] > 2e-3, "the tool goes to the right");
+      await until(tip, (p) => p[0] < -2e-3, "and to the left");
+      await page.click(".end");
+    } finally { tracker.close(); }
+  });
 });
+
+/// A TRANSFORM message of protocol version 1, unit rotation, position in millimetres; its time is now.
+function transform(name: string, [x, y, z]: number[]): Buffer {
+  const message = Buffer.alloc(58 + 48);
+  message.writeUInt16BE(1, 0);
+  message.write("TRANSFORM", 2);
+  message.write(name, 14);
+  message.writeUInt32BE(Math.floor(Date.now() / 1000), 34);
+  message.writeUInt32BE(Math.floor(((Date.now() % 1000) / 1000) * 2 ** 32), 38);
+  message.writeUInt32BE(48, 46);
+  [1, 0, 0, 0, 1, 0, 0, 0, 1, x, y, z].forEach((value, i) => message.writeFloatBE(value, 58 + 4 * i));
+  let crc = 0n; // CRC-64, ECMA-182
+  for (const byte of message.subarray(58)) {
+    crc ^= BigInt(byte) << 56n;
+    for (let bit = 0; bit < 8; ++bit) crc = crc & (1n << 63n) ? BigInt.asUintN(64, (crc << 1n) ^ 0x42F0E1EBA9EA3693n) : BigInt.asUintN(64, crc << 1n);
+  }
+  message.writeBigUInt64BE(crc, 50);
+  return message;
+}

@@ -50,7 +50,7 @@ class Handle {
 };
 
 CalibrationPlan plan(const Pty& pty, const std::string& folder) {
-  CalibrationPlan p = calibration_plan(R"({"sensor":"S-17","repeats":2,"angles":[0,6,12,18,24],"forces":[0,0.5,1,2,3]})", pty.path(), FILUM_SOURCE_DIR, folder);
+  CalibrationPlan p = calibration_plan(R"({"sensor":"S-17","identity":42,"repeats":2,"angles":[0,6,12,18,24],"forces":[0,0.5,1,2,3]})", pty.path(), FILUM_SOURCE_DIR, folder);
   return p;
 }
 
@@ -87,11 +87,20 @@ TEST_F(CalibrationSessionTest, LeadsThroughAllValuesAndWritesWhatForcepsRead) {
   Handle handle(pty);
   EXPECT_EQ(session.status()["state"], "asking");
   EXPECT_NE(session.status()["instruction"].get<std::string>().find("0 deg"), std::string::npos);
+  handle.wait();
+  session.read();
+  for (int k = 0; k < 5000 && session.status()["taken"] == 0; ++k) std::this_thread::sleep_for(2ms);
+  ASSERT_EQ(session.status()["taken"], 1);
+  EXPECT_NEAR(session.status()["live"].get<double>(), 1000.0, 2.0);
+  session.undo();  // what was read by mistake is asked for again
+  EXPECT_EQ(session.status()["taken"], 0);
   go_through(session, handle, 0.0);
   const auto status = session.status();
   ASSERT_EQ(status["state"], "done") << status.dump();
   const ForcepsCalibration made = ForcepsCalibration::load(session.file());
   EXPECT_NEAR(made.angle(1000 + 80 * 10), 10.0 * M_PI / 180.0, 2e-3);
+  EXPECT_EQ(made.identity, 42u);
+  EXPECT_EQ(made.sensor, "S-17");
   EXPECT_NEAR(status["fits"]["force"]["gain"].get<double>(), 1.0 / 900.0, 1e-6);
 }
 
@@ -107,7 +116,7 @@ TEST_F(CalibrationSessionTest, RefusesACurveWithItsReasonAndWritesNothing) {
 }
 
 TEST(CalibrationPlan, WishesOfAPageAreChecked) {
-  for (const char* wish : {"nothing", "[]", R"({"sensor":"../x"})", R"({"repeats":0})", R"({"angles":[0,1,2,3]})", R"({"angles":[0,1,2,3,3]})", R"({"forces":[0,1,2,3,99]})", R"({"name":""})"})
+  for (const char* wish : {"nothing", "[]", R"({"sensor":"../x"})", R"({"repeats":0})", R"({"identity":0})", R"({"identity":"x"})", R"({"angles":[0,1,2,3]})", R"({"angles":[0,1,2,3,3]})", R"({"forces":[0,1,2,3,99]})", R"({"name":""})"})
     EXPECT_THROW(calibration_plan(wish, "", "", ""), InputError) << wish;
   EXPECT_EQ(calibration_plan("{}", "p", "r", "f").repeats, 2);
   EXPECT_THROW(CalibrationSession(calibration_plan("{}", "/dev/no-such-port", FILUM_SOURCE_DIR, "")), InputError);

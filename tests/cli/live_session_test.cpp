@@ -18,7 +18,7 @@ TEST(LiveSession, RunsItsTimeAndTheSameTwice) {
 TEST(LiveSession, EndsWhenAskedAndLetsTheDevicesGo) {
   LiveOptions options;
   options.longest = 3600.0;  // paced: it would take an hour
-  LiveSession session(load_setup(FILUM_SOURCE_DIR, "tip-hold"), open_live_inputs("", FILUM_SOURCE_DIR), std::move(options));
+  LiveSession session(load_setup(FILUM_SOURCE_DIR, "tip-hold"), open_live_inputs({}, FILUM_SOURCE_DIR), std::move(options));
   session.start();
   EXPECT_NE(session.pointer(), nullptr);
   session.request_stop();

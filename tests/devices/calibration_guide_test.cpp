@@ -39,5 +39,29 @@ TEST(CalibrationGuide, ABrokenWireGivesNoReading) {
   EXPECT_TRUE(guide.points().empty());
 }
 
+TEST(CalibrationGuide, TheLastValueCanBeTakenBack) {
+  CalibrationGuide guide(CalibrationGuide::Channel::force, {0.0, 1.0}, 1);
+  const auto read = [&](int count, std::size_t samples) {
+    guide.begin();
+    DeviceSample s;
+    s.has_grip_force = true;
+    s.raw_force = count;
+    for (std::size_t k = 0; k < samples; ++k) guide.take(s);
+  };
+  guide.undo();
+  EXPECT_EQ(guide.value(), 0.0) << "there is nothing to take back";
+  read(300, CalibrationGuide::kSamples);
+  read(700, 100);
+  EXPECT_NEAR(guide.progress(), 0.2, 1e-12);
+  guide.undo();
+  EXPECT_FALSE(guide.reading());
+  EXPECT_EQ(guide.points().size(), 1u) << "first the reading under way";
+  read(900, CalibrationGuide::kSamples);
+  guide.undo();
+  EXPECT_EQ(guide.value(), 1.0);
+  read(1200, CalibrationGuide::kSamples);
+  EXPECT_EQ(guide.points().back().count, 1200.0);
+}
+
 }  // namespace
 }  // namespace filum

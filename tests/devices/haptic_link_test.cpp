@@ -103,7 +103,7 @@ TEST(HapticLink, SilenceMeansNoForceThenAnotherPeerMayCome) {
   Peer other(e.link.port());
   other.send(somewhere(), 1, 9);
   e.poll();
-  EXPECT_EQ(e.link.counts().strangers, 1u) << "the first peer may come back";
+  EXPECT_EQ(e.samples.size(), 1u) << "the first peer may come back";
   e.poll(2001);
   EXPECT_EQ(e.link.health().state, DeviceState::lost);
   other.send(somewhere(), 2, 9);
@@ -185,6 +185,38 @@ TEST(HapticLink, AFloodIsReadInBoundedPieces) {
   e.poll();
   EXPECT_EQ(e.samples.size(), 1u + 64u);
   EXPECT_EQ(e.link.counts().floods, 1u);
+}
+
+TEST(HapticLink, AFloodOfStrangersCostsThePeerNothing) {
+  Ends e;
+  Peer stranger(e.link.port());
+  e.peer.send(somewhere(), 1);
+  e.poll();
+  for (std::uint32_t k = 2; k < 102; ++k) {
+    for (std::uint32_t n = 0; n < 200; ++n) stranger.send(somewhere(0.1), 1000 * k + n);
+    e.peer.send(somewhere(), k);
+    e.poll();
+  }
+  EXPECT_EQ(e.samples.size(), 101u);
+  EXPECT_EQ(e.link.health().lost, 0u);
+  EXPECT_EQ(e.link.counts().floods, 0u);
+  for (const DeviceSample& s : e.samples) ASSERT_NEAR(s.X_WD.p.x(), 0.01, 1e-6);
+}
+
+TEST(HapticLink, AfterAFloodOfTheFirstOneThePortIsFreeAgain) {
+  Ends e;
+  Peer honest(e.link.port());
+  for (std::uint32_t k = 0; k < 200; ++k) e.peer.send(somewhere(0.1), 7);  // one packet, again and again
+  e.poll();
+  EXPECT_EQ(e.samples.size(), 1u);
+  EXPECT_EQ(e.link.counts().late, 63u);
+  for (int k = 0; k < 5; ++k) e.poll();
+  e.poll(2001);
+  e.poll();
+  honest.send(somewhere(), 1, 9);
+  e.poll();
+  EXPECT_EQ(e.link.health().state, DeviceState::live);
+  EXPECT_NEAR(e.samples.back().X_WD.p.x(), 0.01, 1e-6);
 }
 
 TEST(HapticLink, TheAddressIsNamedInTheRefusal) {

@@ -21,7 +21,10 @@ Pose pose_at(double x) {
   return X;
 }
 
-std::vector<std::uint8_t> transform(const std::string& name, const Pose& X, std::int64_t time_us = 5'250'000) {
+/// Each message a millisecond later than the one before, unless a time is given.
+std::vector<std::uint8_t> transform(const std::string& name, const Pose& X, std::int64_t time_us = 0) {
+  static std::int64_t clock_us = 5'250'000;
+  if (time_us == 0) time_us = clock_us += 1000;
   std::vector<std::uint8_t> bytes(kIgtlTransform);
   EXPECT_EQ(igtl_transform(name, X, time_us, bytes), kIgtlTransform);
   return bytes;
@@ -62,7 +65,7 @@ struct Fed {
 
 TEST(IgtlTracker, ATransformIsAPoseInMetres) {
   Fed f;
-  ASSERT_TRUE(f.give(transform("Tool1ToReference", pose_at(0.01))));
+  ASSERT_TRUE(f.give(transform("Tool1ToReference", pose_at(0.01), 5'250'000)));
   ASSERT_EQ(f.samples.size(), 1u);
   EXPECT_EQ(f.samples[0].tool, 1);
   EXPECT_LT((f.samples[0].X_WD.p - pose_at(0.01).p).norm(), 1e-8);
@@ -135,6 +138,38 @@ TEST(IgtlTracker, LengthsThatLieAreSurvived) {
   auto endless = transform("Tool0", {});
   put(endless, 42, ~0ull, 8);
   EXPECT_FALSE(f.give(endless)) << "the peer is dropped";
+}
+
+TEST(IgtlTracker, WhatIsSaidAgainIsNoPose) {
+  Fed f;
+  const auto first = transform("Tool0", pose_at(0.01)), second = transform("Tool0", pose_at(0.011));
+  for (const auto& message : {first, second, first, second, second}) ASSERT_TRUE(f.give(message));
+  EXPECT_EQ(f.samples.size(), 2u) << "a recording of the line played back";
+  EXPECT_EQ(f.tracker.repeated(), 3u);
+  ASSERT_TRUE(f.give(transform("Tool1", pose_at(0.01), 5'000'000))) << "each tool has its own newest";
+  EXPECT_EQ(f.samples.size(), 3u);
+  bool kept = true;
+  for (int k = 0; k < 300 && kept; ++k) kept = f.give(first);
+  EXPECT_FALSE(kept) << "a peer that only repeats itself is dropped";
+  EXPECT_EQ(f.samples.size(), 3u);
+}
+
+TEST(IgtlTracker, AFloodIsReadInBoundedPieces) {
+  IgtlStream stream("127.0.0.1", 0);
+  IgtlTracker tracker("127.0.0.1", stream.port());
+  std::vector<DeviceSample> samples;
+  std::int64_t now = 0;
+  for (; !stream.has_peer() && now < 2'000'000; now += 1000) {
+    tracker.poll(now, samples);
+    stream.send(0, pose_at(0.01), now + 1);
+  }
+  for (int k = 0; k < 5000; ++k) stream.send(0, pose_at(0.01), now + 2 + k);
+  for (int k = 0; k < 50; ++k) {
+    samples.clear();
+    tracker.poll(now += 1000, samples);
+    ASSERT_LE(samples.size(), 4096 / kIgtlTransform + 1) << "of some hundreds that wait";
+  }
+  EXPECT_GT(tracker.health().received, 1000u);
 }
 
 TEST(IgtlTracker, NoBytesCrashIt) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "devices/forceps_calibration.h"
@@ -19,11 +20,19 @@ class ScriptFrames {
 
   const PoseScript& script() const { return script_; }
 
+  /// From now on this opening [rad] and squeeze [N] instead of the script's.
+  void hold(double grip_angle, double grip_force) { held_ = {grip_angle, grip_force}; }
+
   /// Appends the frames of one instant t [s]: pose and grip of every tool the script moves.
   void append(double t, std::vector<std::vector<std::uint8_t>>& frames) {
     for (int tool = 0; tool < script_.n_tools(); ++tool) {
-      const DeviceSample sample = script_.at(tool, t);
+      DeviceSample sample = script_.at(tool, t);
       if (!sample.has_pose) continue;
+      if (held_) {
+        sample.grip_angle = (*held_)[0];
+        sample.grip_force = (*held_)[1];
+        sample.has_grip_force = true;
+      }
       filum_frame frame{};
       // Grip first: a pose frame carries the buttons of the grip before it.
       const filum_grip grip{static_cast<std::uint8_t>(tool), flags_of(sample),
@@ -69,6 +78,7 @@ class ScriptFrames {
 
   PoseScript script_;
   ForcepsCalibration calibration_;
+  std::optional<std::array<double, 2>> held_;
   std::uint16_t sequence_ = 0;
 };
 

@@ -2,12 +2,17 @@
 // real time, with as much loss and damage on the line as asked for. Prints the name of the pty; begins when
 // the trainer sends its first ping.
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 #include <random>
+#include <string>
 #include <thread>
 
 #include "base/error.h"
@@ -29,6 +34,7 @@ struct Options {
   double garbage = 0.0;  // probability of a burst of random bytes after a frame
   double hold = 1.0;     // [s] the last pose is kept
   unsigned seed = 1;
+  bool by_hand = false;
 };
 
 /// The line with its troubles.
@@ -88,9 +94,30 @@ bool answer(filum::Pty& pty, filum::FrameReader& heard, filum::ScriptFrames& fra
   return pinged;
 }
 
+/// Lines of standard input, "DEGREES NEWTON": what the jaws and the pad are set to.
+class Hand {
+ public:
+  void follow(filum::ScriptFrames& frames) {
+    char bytes[256];
+    pollfd ready{STDIN_FILENO, POLLIN, 0};
+    if (::poll(&ready, 1, 0) <= 0) return;
+    const ssize_t n = ::read(STDIN_FILENO, bytes, sizeof bytes);
+    if (n <= 0) return;
+    text_.append(bytes, static_cast<std::size_t>(n));
+    for (std::size_t end; (end = text_.find('\n')) != std::string::npos; text_.erase(0, end + 1)) {
+      double degrees = 0.0, newton = 0.0;
+      if (std::sscanf(text_.c_str(), "%lf %lf", &degrees, &newton) == 2) frames.hold(degrees * std::numbers::pi / 180.0, newton);
+    }
+  }
+
+ private:
+  std::string text_;
+};
+
 void play(const Options& options, filum::ScriptFrames& frames, filum::Pty& pty) {
   Line line(pty, options);
   filum::FrameReader heard;
+  Hand hand;
   while (!stop_asked && !answer(pty, heard, frames, line, 0.0))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   const auto start = Clock::now();
@@ -111,6 +138,7 @@ void play(const Options& options, filum::ScriptFrames& frames, filum::Pty& pty) 
       next_hello += 1.0;
     }
     now.clear();
+    if (options.by_hand && tick % 16 == 0) hand.follow(frames);
     frames.append(t, now);
     bool listening = true;
     for (Frame& frame : now) listening = listening && line.send(std::move(frame));
@@ -135,6 +163,7 @@ int main(int argc, char** argv) {
   app.add_option("--garbage", options.garbage, "probability of random bytes after a frame")
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--hold", options.hold, "seconds the last pose is kept")->check(CLI::Range(0.0, 3600.0));
+  app.add_flag("--by-hand", options.by_hand, "opening [deg] and squeeze [N] from lines of standard input");
   app.add_option("--seed", options.seed, "seed of loss and damage");
   CLI11_PARSE(app, argc, argv);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_asked = 1; });

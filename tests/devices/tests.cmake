@@ -20,13 +20,7 @@ else()
   set_tests_properties(igtl_library.NotTested PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED")
 endif()
 
-# Forceps for those who have none: plays a demonstration through a pty.
-add_executable(filum_serial_feeder ${CMAKE_CURRENT_LIST_DIR}/serial_feeder.cpp)
-target_link_libraries(filum_serial_feeder PRIVATE filum_devices)
-
-# A haptic device for those who have none: a simulated one that talks to the trainer by UDP.
-add_executable(filum_haptic_client ${PROJECT_SOURCE_DIR}/hardware/haptic-link/reference_client.cpp)
-target_link_libraries(filum_haptic_client PRIVATE filum_options filum_base filum_link)
+include(${CMAKE_CURRENT_LIST_DIR}/programs.cmake)
 
 # What devices cost (no test: prints figures).
 add_executable(filum_device_bench ${CMAKE_CURRENT_LIST_DIR}/device_bench.cpp)

@@ -4,6 +4,7 @@
 
 extern "C" {
 #include <simavr/avr_adc.h>
+#include <simavr/avr_eeprom.h>
 #include <simavr/avr_ioport.h>
 #include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
@@ -71,6 +72,12 @@ void AvrBoard::set_voltage(int channel, int millivolt) {
 
 void AvrBoard::set_switch(int pin, bool closed) {
   avr_raise_irq(avr_io_getirq(impl_->avr, AVR_IOCTL_IOPORT_GETIRQ('D'), pin), closed ? 0 : 1);
+}
+
+void AvrBoard::write_eeprom(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
+  avr_eeprom_desc_t desc{copy.data(), static_cast<std::uint16_t>(address), static_cast<std::uint32_t>(copy.size())};
+  avr_ioctl(impl_->avr, AVR_IOCTL_EEPROM_SET, &desc);
 }
 
 void AvrBoard::reset() {

@@ -26,6 +26,8 @@ class AvrBoard {
   void set_voltage(int channel, int millivolt);
   /// Switch on PORTD pin closed to ground.
   void set_switch(int pin, bool closed);
+  /// What is stored in the board, before it starts.
+  void write_eeprom(std::uint32_t address, std::span<const std::uint8_t> bytes);
   void reset();
   /// A watchdog cannot be fed by a processor that hangs: stops the program for this long [us] while its timers run.
   void hang_us(std::int64_t us);

@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "devices/sample_faults.h"
 #include "devices/serial_forceps.h"
 #include "tests/devices/pty.h"
 #include "tests/firmware/avr_board.h"
@@ -130,6 +131,16 @@ TEST(ForcepsFirmware, HelloSaysWhatItIs) {
   EXPECT_EQ(hello.calibration, 0u) << "never written";
 }
 
+TEST(ForcepsFirmware, IdentityAndCalibrationComeFromItsEeprom) {
+  Bench bench;
+  const std::uint8_t stored[] = {7, 0, 42, 0, 0, 0};  // device 7, calibration 42
+  bench.board_.write_eeprom(0, stored);
+  bench.run(50);
+  ASSERT_TRUE(bench.driver_.stream().hello().has_value());
+  EXPECT_EQ(bench.driver_.stream().hello()->calibration, 42u);
+  EXPECT_TRUE(bench.driver_.stream().calibration_differs()) << "the file in use is for no handle in particular";
+}
+
 TEST(ForcepsFirmware, SaturationBrokenWiresAndSwitches) {
   Bench bench;
   for (int channel = 0; channel < 2; ++channel) bench.board_.set_voltage(channel, 2500);
@@ -137,11 +148,17 @@ TEST(ForcepsFirmware, SaturationBrokenWiresAndSwitches) {
   bench.run(150);
   EXPECT_TRUE(bench.samples_.back().has_grip_angle);
   EXPECT_NEAR(bench.driver_.stream().status()->temperature, counts(1250), 4);
+  EXPECT_EQ(bench.samples_.back().buttons, 0u);
+  bench.board_.set_voltage(0, 4850);  // 97 % of the range: no rail, but the end of the amplifier
+  bench.run(60);
+  EXPECT_EQ(bench.samples_.back().buttons, kAngleSaturated);
+  EXPECT_TRUE(bench.samples_.back().has_grip_angle);
   bench.board_.set_voltage(0, 0);  // the resistor draws an open input to ground
   bench.run(15);
   EXPECT_TRUE(bench.samples_.back().has_grip_angle) << "a short touch of the rail is no broken wire";
   bench.run(15);
   EXPECT_FALSE(bench.samples_.back().has_grip_angle);
+  EXPECT_EQ(bench.samples_.back().buttons, kAngleSaturated | kAngleBroken) << "recorded beside the counts";
   EXPECT_TRUE(bench.samples_.back().has_grip_force) << "the other channel still measures";
   bench.board_.set_voltage(0, 2500);
   bench.board_.set_voltage(1, 5000);

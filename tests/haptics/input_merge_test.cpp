@@ -35,6 +35,13 @@ DeviceSample squeeze(std::int64_t time_us, double force) {
   return s;
 }
 
+TEST(InputMerge, WhatAHandleSaysOfItsFaultsIsNoButton) {
+  InputMerge merge;
+  merge.take(pose(0, Vec3::Zero()), 0, kStale);
+  merge.take(grip(0, 0.1, 0x700 | 2), 1, kStale);
+  EXPECT_EQ(merge.inputs(0).tools[0].buttons, 2u);
+}
+
 TEST(InputMerge, NothingIsValidBeforeASample) {
   InputMerge merge;
   for (const ToolInput& tool : merge.inputs(0).tools) EXPECT_FALSE(tool.valid);

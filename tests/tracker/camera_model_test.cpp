@@ -6,20 +6,10 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "tests/tracker/rendered.h"
+#include "tests/tracker/board_views.h"
 
 namespace filum {
 namespace {
-
-/// A chessboard of 10 x 7 squares of 10 mm with a white rim.
-cv::Mat board_picture() {
-  constexpr int kCell = 40;
-  cv::Mat picture(9 * kCell, 12 * kCell, CV_8U, cv::Scalar(255));
-  for (int r = 0; r < 7; ++r)
-    for (int c = 0; c < 10; ++c)
-      if ((r + c) % 2 == 0) picture(cv::Rect((c + 1) * kCell, (r + 1) * kCell, kCell, kCell)).setTo(10);
-  return picture;
-}
 
 std::vector<cv::Mat> views(double tilt) {
   std::vector<cv::Mat> pictures;

@@ -2,12 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
+#include <sstream>
 
+#include "base/error.h"
 #include "tests/tracker/rendered.h"
 #include "tracker/marker_sheet.h"
+#include "tracker/pose_log.h"
 
 namespace filum {
 namespace {
@@ -46,6 +54,16 @@ cv::Mat scene(const Pose& X_CM, double blur, double noise, cv::RNG& random, int 
   return developed(big, blur, noise, random);
 }
 
+/// As seen by a shutter that stays open while the marker crosses `length` pixels.
+cv::Mat smeared(const cv::Mat& picture, int length, cv::RNG& random) {
+  cv::Mat out;
+  cv::filter2D(picture, out, -1, cv::Mat(1, length, CV_32F, cv::Scalar(1.0 / length)));
+  cv::Mat grain(out.size(), CV_16S), sum;
+  random.fill(grain, cv::RNG::NORMAL, 0.0, 2.0);
+  cv::add(out, grain, sum, cv::noArray(), CV_8U);
+  return sum;
+}
+
 struct Spread {
   int found = 0;
   double error = 0.0;       // [m], mean length
@@ -53,14 +71,15 @@ struct Spread {
   double predicted = 0.0;   // [m], from the covariance
 };
 
-Spread measure(double distance, double blur, int frames = 6) {
+Spread measure(double distance, double blur, int frames = 6, int smear = 1) {
   MarkerTracker tracker = tracker_for();
   cv::RNG random(7);
   Spread s;
   std::vector<Vec3> errors;
   for (int k = 0; k < frames; ++k) {
     const Pose truth = marker_at(distance, 0.5, 0.004 + 1.3e-4 * k, -0.003 + 0.7e-4 * k);
-    for (const MarkerPose& pose : tracker.find(scene(truth, blur, 2.0, random))) {
+    const cv::Mat picture = smear > 1 ? smeared(scene(truth, blur, 0.0, random), smear, random) : scene(truth, blur, 2.0, random);
+    for (const MarkerPose& pose : tracker.find(picture)) {
       errors.push_back(pose.X_CT.p - truth.p);
       s.error += errors.back().norm();
       s.predicted += std::sqrt(pose.covariance.topLeftCorner<3, 3>().trace());
@@ -92,6 +111,65 @@ TEST(MarkerTracker, ErrorAndJitterAgainstDistanceAndBlur) {
       }
     }
   }
+}
+
+TEST(MarkerTracker, ErrorAgainstTheSmearOfAMovingMarker) {
+  std::printf("marker 12 mm at 150 mm, shutter open while it crosses\nsmear [px]  found  error [mm]  jitter [mm]\n");
+  for (const int smear : {1, 4, 8, 16}) {
+    const Spread s = measure(0.15, 0.5, 4, smear);
+    std::printf("%10d  %2d/4  %10.3f  %11.3f\n", smear, s.found, 1e3 * s.error, 1e3 * s.jitter);
+    EXPECT_GE(s.found, smear <= 8 ? 3 : 0);
+    EXPECT_LT(s.error, 0.015 * 0.15) << "what is too smeared is refused, not measured wrong";
+  }
+}
+
+TEST(MarkerTracker, AFingerThatPassesIsADropoutAndNeverAWrongPose) {
+  cv::RNG random(6);
+  const Pose truth = marker_at(0.15, 0.5);
+  const cv::Mat clear = scene(truth, 0.5, 1.0, random);
+  for (const int brightness : {30, 150, 250}) {  // dark, like skin, as white as the paper
+    MarkerTracker tracker = tracker_for();
+    int found = 0, hidden = 0, at_the_end = 0;
+    double worst = 0.0;
+    for (int k = 0; k < 25; ++k) {
+      cv::Mat picture = clear.clone();
+      cv::rectangle(picture, {380 + 8 * k, 150, 40, 300}, cv::Scalar(brightness), cv::FILLED);  // from left to right; the marker is 80 px wide
+      cv::GaussianBlur(picture, picture, {}, 0.5);
+      const auto poses = tracker.find(picture);
+      for (const MarkerPose& pose : poses) worst = std::max(worst, (pose.X_CT.p - truth.p).norm());
+      found += static_cast<int>(poses.size());
+      hidden += poses.empty() ? 1 : 0;
+      if (k == 0 || k == 24) at_the_end += static_cast<int>(poses.size());
+    }
+    std::printf("a finger of 40 px and brightness %d passes over a marker of 80 px in 25 pictures: %d poses, %d dropouts, worst error of a pose %.2f mm\n",
+                brightness, found, hidden, 1e3 * worst);
+    EXPECT_EQ(at_the_end, 2) << "seen before, and at once again";
+    EXPECT_GT(hidden, 10);
+    EXPECT_LT(worst, 0.01 * 0.15);
+  }
+}
+
+TEST(MarkerTracker, PosesAreLoggedWithTheirCovariance) {
+  const std::string path = testing::TempDir() + "/filum-poses-" + std::to_string(::getpid()) + ".csv";
+  MarkerTracker tracker = tracker_for();
+  cv::RNG random(8);
+  const auto poses = tracker.find(scene(marker_at(0.15, 0.5), 0.5, 1.0, random));
+  ASSERT_EQ(poses.size(), 1u);
+  { PoseLog(path).add(1.5, poses[0], poses[0].X_CT); }
+  EXPECT_THROW(PoseLog{path}, InputError) << "nothing is written over";
+  std::ifstream file(path);
+  std::string head, row;
+  std::getline(file, head);
+  std::getline(file, row);
+  EXPECT_EQ(std::count(head.begin(), head.end(), ','), 31);
+  ASSERT_EQ(std::count(row.begin(), row.end(), ','), 31);
+  EXPECT_EQ(row.substr(0, 8), "1.500000");
+  std::vector<double> cells;
+  std::stringstream stream(row);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(std::stod(cell));
+  EXPECT_NEAR(cells[11], poses[0].covariance(0, 0), 1e-6 * cells[11]);
+  EXPECT_NEAR(cells[31], poses[0].covariance(5, 5), 1e-6 * cells[31]);
+  std::filesystem::remove(path);
 }
 
 TEST(MarkerTracker, ItsJitterIsLargerThanTremor) {

@@ -1,7 +1,15 @@
 if(TARGET filum_tracker)
-  foreach(name camera_model marker_tracker)
+  foreach(name camera_guide camera_model field_frame marker_tracker)
     filum_test(tracker/${name} opencv_imgproc opencv_calib3d)
   endforeach()
+  if(TARGET filum_camera)
+    filum_test(tracker/picture_source filum_picture_source)
+    # A chessboard for those who have none: pictures of it.
+    add_executable(filum_board_pictures ${CMAKE_CURRENT_LIST_DIR}/board_pictures.cpp)
+    target_link_libraries(filum_board_pictures PRIVATE filum_tracker opencv_imgproc opencv_imgcodecs)
+    add_test(NAME tracker.guide COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/guide_test.sh $<TARGET_FILE:filum_camera> $<TARGET_FILE:filum_board_pictures>)
+    set_tests_properties(tracker.guide PROPERTIES TIMEOUT 300)
+  endif()
 else()
   add_test(NAME tracker.NotTested COMMAND ${CMAKE_COMMAND} -E echo
     "SKIPPED: install libopencv-dev and libopencv-contrib-dev to build and test the camera tracker")

@@ -27,16 +27,28 @@ export const reconcile = {
 };
 
 export interface CalibrationPoint { value: number; count: number; noise: number; upwards: boolean }
-export interface CalibrationFit { good: boolean; why: string; unit: string; gain: number; zero: number; uncertainty: number; hysteresis: number; repeatability: number }
+export interface CalibrationFit { good: boolean; why: string; unit: string; gain: number; zero: number; uncertainty: number; residual: number; hysteresis: number; repeatability: number; from: number; to: number }
 export interface CalibrationStatus {
   port: string;
   in_use: string;
-  run: null | { state: "asking" | "reading" | "done" | "refused"; instruction: string; taken: number; of: number; trouble: string; file: string;
+  run: null | { state: "asking" | "reading" | "done" | "refused"; instruction: string; taken: number; of: number; progress: number; live: number | null; trouble: string; file: string;
     angle: CalibrationPoint[]; force: CalibrationPoint[]; fits?: { angle: CalibrationFit; force: CalibrationFit } };
 }
 export const calibration = {
   status: (): Promise<CalibrationStatus> => get("/api/calibration"),
   change: (what: string, wish: object): Promise<CalibrationStatus> => post(`/api/calibration/${what}`, wish),
+};
+
+export interface CameraStatus {
+  there: boolean;
+  fixed: string;
+  run: null | { state: "starting" | "looking" | "ended" | "done" | "failed"; source: string; square: number; instruction?: string; complete?: boolean; views?: number;
+    wishes?: { what: string; granted: boolean }[]; board?: { size: number; tilt_x_deg: number; tilt_y_deg: number } | null; picture?: number; trouble?: string; file?: string;
+    result?: null | { residual_px: number; views: number; coverage: number; width: number; height: number; fx: number; fy: number; cx: number; cy: number; uncertainty: number[]; distortion: number[] } };
+}
+export const camera = {
+  status: (): Promise<CameraStatus> => get("/api/camera"),
+  change: (what: string, wish: object): Promise<CameraStatus> => post(`/api/camera/${what}`, wish),
 };
 
 export interface AnalysisStatus { state: "working" | "ready" | "failed"; document: string; message: string }

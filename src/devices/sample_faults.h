@@ -1,0 +1,15 @@
+#pragma once
+// What a handle says of its own readings, in the upper bits of DeviceSample::buttons, so that it is recorded beside them. The tools of the
+// scene do not see these bits.
+
+#include <cstdint>
+
+namespace filum {
+
+inline constexpr std::uint32_t kButtonBits = 0xFF;      // clutch, cut, next
+inline constexpr std::uint32_t kAngleSaturated = 0x100;
+inline constexpr std::uint32_t kForceSaturated = 0x200;
+inline constexpr std::uint32_t kAngleBroken = 0x400;    // wire broken or shorted
+inline constexpr std::uint32_t kForceBroken = 0x800;
+
+}  // namespace filum

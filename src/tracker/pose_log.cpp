@@ -1,0 +1,33 @@
+#include "tracker/pose_log.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "base/error.h"
+
+namespace filum {
+
+PoseLog::PoseLog(const std::string& path) {
+  if (std::filesystem::exists(path)) throw InputError("--log", "file", path, "a file that does not exist yet");
+  file_.open(path);
+  file_ << "time_s,tool,marker,x_m,y_m,z_m,qw,qx,qy,qz,residual_px";
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) file_ << ",c" << i << j;
+  file_ << "\n";
+  if (!file_.flush()) throw InputError("--log", "file", path, "a file that can be written");
+}
+
+void PoseLog::add(double time, const MarkerPose& pose, const Pose& X) {
+  char text[320];
+  std::snprintf(text, sizeof text, "%.6f,%d,%d,%.7f,%.7f,%.7f,%.9f,%.9f,%.9f,%.9f,%.4f", time, pose.tool, pose.marker, X.p.x(), X.p.y(), X.p.z(),
+                X.q.w(), X.q.x(), X.q.y(), X.q.z(), pose.residual);
+  file_ << text;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) {
+      std::snprintf(text, sizeof text, ",%.6e", pose.covariance(i, j));
+      file_ << text;
+    }
+  file_ << "\n";
+}
+
+}  // namespace filum

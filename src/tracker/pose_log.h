@@ -1,0 +1,23 @@
+#pragma once
+// Poses that a camera saw, as CSV: time [s], tool, marker, position [m], quaternion w x y z, residual [px], and the 21 numbers of the upper
+// triangle of the marker's covariance (position [m], rotation vector [rad]; camera's frame), row by row. Test: marker_tracker_test.
+
+#include <fstream>
+#include <string>
+
+#include "tracker/marker_tracker.h"
+
+namespace filum {
+
+class PoseLog {
+ public:
+  /// Throws InputError for a file that exists or cannot be written.
+  explicit PoseLog(const std::string& path);
+  /// `X`: the pose that was sent.
+  void add(double time, const MarkerPose& pose, const Pose& X);
+
+ private:
+  std::ofstream file_;
+};
+
+}  // namespace filum
