@@ -191,11 +191,11 @@ Check check_versions() {
 }
 
 template <class Function>
-Check guarded(const char* name, Function check) {
+Check guarded(const char* name, Function check, const char* advice = "Restore the file named, or give another folder with --root.") {
   try {
     return check();
   } catch (const std::exception& error) {
-    return {name, false, error.what(), "Restore the file named, or give another folder with --root."};
+    return {name, false, error.what(), advice};
   }
 }
 
@@ -210,7 +210,7 @@ int run(const DoctorOptions& o) {
       check_files(o.common.root),
       check_versions(),
   };
-  if (!o.serial.empty()) checks.push_back(guarded("handle", [&] { return check_handle(o); }));
+  if (!o.serial.empty()) checks.push_back(guarded("handle", [&] { return check_handle(o); }, "Plug the forceps in, give the port that is there, and end what else uses it."));
   const bool ok = std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.ok; });
   if (o.common.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
