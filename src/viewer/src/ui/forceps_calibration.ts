@@ -17,6 +17,7 @@ export class ForcepsCalibration {
   private readonly live = h("output", { class: "live-count" }, "");
   private readonly reading = h("progress", { max: 1, value: 0, "aria-label": "Share of this reading" });
   private shown = "";
+  running = false;
 
   constructor() {
     this.element.addEventListener("keydown", (event) => {
@@ -29,6 +30,7 @@ export class ForcepsCalibration {
   /// What changes all the time is changed in place; the rest is drawn anew when it differs, so that no click falls between two buttons.
   show(status: CalibrationStatus): void {
     const run = status.run;
+    this.running = run?.state === "asking" || run?.state === "reading";
     this.reading.value = run?.progress ?? 0;
     setText(this.live, run && (run.state === "asking" || run.state === "reading") ? (run.live === null ? "no reading: silent, or its wire is broken" : `${run.live.toFixed(0)} counts now`) : "");
     const key = JSON.stringify({ ...status, run: run && { ...run, live: 0, progress: 0 } });

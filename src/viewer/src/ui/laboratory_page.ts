@@ -6,7 +6,7 @@ import { CameraCalibration } from "./camera_calibration";
 import { h, setText } from "./dom";
 import { ForcepsCalibration } from "./forceps_calibration";
 
-const kEvery = 500; // [ms]
+const kEvery = 500, kSoon = 150; // [ms]
 const kVerdicts: Record<string, string> = {
   agree: "agrees", parameter: "a parameter differs", effect: "effect named", ambiguous: "cannot be told apart", unknown: "something unnamed is missing",
 };
@@ -45,7 +45,7 @@ export class LaboratoryPage implements Page {
     } catch (error) {
       setText(this.said, `The laboratory does not answer: ${(error as Error).message}.`);
     }
-    if (!this.gone) this.timer = window.setTimeout(() => void this.look(), kEvery);
+    if (!this.gone) this.timer = window.setTimeout(() => void this.look(), this.forceps.running ? kSoon : kEvery);
   }
 
   private async changed(ask: () => Promise<ReconcileStatus>): Promise<void> {
