@@ -48,6 +48,7 @@ export class CameraCalibration {
     if (what !== this.drawn) {
       this.drawn = what;
       this.listed = "";
+      if (what === "begin") this.seen = -1;
       this.body.replaceChildren(...this.draw(what, status));
     }
     if (!run) return;
@@ -82,6 +83,7 @@ export class CameraCalibration {
     setText(this.board, b ? `${run.views} views. The board now: ${(100 * b.size).toFixed(0)} % of the picture's width, tilted by about ${b.tilt_x_deg.toFixed(0)}° sideways and ${b.tilt_y_deg.toFixed(0)}° up and down.` : `${run.views ?? 0} views. The board is not to be seen whole.`);
     this.finish.classList.toggle("ready", run.complete === true);
     (this.undo as HTMLButtonElement).disabled = !run.views;
+    this.picture.hidden = this.seen < 0 && !run.picture;
     if (run.picture !== undefined && run.picture !== this.seen && run.picture > 0) this.picture.src = `/documents/camera/preview.jpg?${(this.seen = run.picture)}`;
     const key = JSON.stringify(run.wishes);
     if (key === this.listed || !run.wishes) return;
