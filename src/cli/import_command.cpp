@@ -15,7 +15,7 @@ void add_import(CLI::App& app, Action& action) {
   };
   auto o = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("import", "Turn published tables into datasets for reconcile");
-  command->add_option("kind", o->kind, "brain-budday2017 or muscle-vanloocke")->required();
+  command->add_option("kind", o->kind, "brain-budday2017, muscle-vanloocke or loadcells-fareke")->required();
   command->add_option("folder", o->folder, "Folder of the tables")->required();
   command->add_option("--out", o->out, "Folder for the datasets")->required();
   command->callback([o, &action] {

@@ -6,13 +6,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <unistd.h>
 
 #include "base/error.h"
 #include "cli/options.h"
+#include "ranks/ranks.h"
+#include "reconcile/plugin.h"
 #include "reconcile/report.h"
 #include "reconcile/search.h"
 
@@ -23,8 +27,8 @@ namespace fs = std::filesystem;
 
 struct ReconcileOptions : CommonOptions {
   std::string dataset, out, all;
-  int threads = 2;
-  bool again = false;
+  int threads = 0;  // 0: two, but one for each process under mpirun
+  bool again = false, repeatable = false;
 };
 
 void show_progress(const std::string& stage, double share) {
@@ -40,6 +44,7 @@ reconcile::Result solve(const std::string& folder, const std::string& out, const
   options.threads = threads;
   if (progress) options.progress = show_progress;
   reconcile::Result r = reconcile::reconcile(d, options);
+  if (o.repeatable) r.seconds = std::numeric_limits<double>::quiet_NaN();
   if (progress) show_progress("done", 1.0);
   reconcile::write_report(d, r, out, program_text());
   name = d.name;
@@ -49,7 +54,7 @@ reconcile::Result solve(const std::string& folder, const std::string& out, const
 
 int run_one(const ReconcileOptions& o) {
   std::string name;
-  const reconcile::Result r = solve(o.dataset, o.out, o, o.threads, true, name);
+  const reconcile::Result r = solve(o.dataset, o.out, o, o.threads > 0 ? o.threads : 2, true, name);
   if (o.json) return kDone;
   std::printf("%s: %s%s", name.c_str(), r.verdict.c_str(), r.partial ? " (partial)" : "");
   if (r.verdict == "effect")
@@ -68,33 +73,69 @@ std::pair<std::size_t, std::size_t> rank_and_size() {
   return {0, 1};
 }
 
-/// Every dataset below a folder, each on one thread; those that have a report already are left alone.
+/// MPI where mpirun started several processes and the module is there; else nothing, and the environment's numbers must do.
+std::unique_ptr<Ranks> start_ranks() {
+  if (rank_and_size().second == 1) return nullptr;
+  std::string why;
+  const auto start = reinterpret_cast<StartRanks>(reconcile::module_function("filum_ranks", kStartRanks, &why));
+  if (start == nullptr && !why.empty()) std::fprintf(stderr, "without MPI: %s\n", why.c_str());
+  return std::unique_ptr<Ranks>(start == nullptr ? nullptr : start());
+}
+
+/// Datasets of the folder that have no report yet, one name a line.
+std::string unfinished(const ReconcileOptions& o) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(o.all))
+    if (fs::is_regular_file(entry.path() / "experiment.yaml")) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  std::string list;
+  for (const std::string& name : names)
+    if (o.again || !fs::exists(fs::path(o.out) / name / "report.json")) list += name + "\n";
+  return list;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream s(text);
+  for (std::string line; std::getline(s, line);) out.push_back(line);
+  return out;
+}
+
+/// Every dataset below a folder, each on one thread; those that have a report already are left alone. Under MPI the processes take them
+/// from one list as they get free; with the environment's numbers alone every process takes each n-th of all.
 int run_all(const ReconcileOptions& o) {
   if (!fs::is_directory(o.all)) throw InputError("--all", "folder", o.all, "a folder of datasets");
-  std::vector<fs::path> folders;
-  for (const auto& entry : fs::directory_iterator(o.all))
-    if (fs::is_regular_file(entry.path() / "experiment.yaml")) folders.push_back(entry.path());
-  std::sort(folders.begin(), folders.end());
-  const auto [rank, ranks] = rank_and_size();
-  std::vector<fs::path> mine;
-  for (std::size_t i = 0; i < folders.size(); ++i)
-    if (i % ranks == rank && (o.again || !fs::exists(fs::path(o.out) / folders[i].filename() / "report.json"))) mine.push_back(folders[i]);
+  const std::unique_ptr<Ranks> ranks = start_ranks();
+  const auto [rank, size] = rank_and_size();
+  ReconcileOptions every = o;
+  every.again = true;
+  const bool by_number = ranks == nullptr && size > 1;
+  // without a common list processes that start late would see fewer names: then all are counted, and finished ones passed over
+  const std::vector<std::string> names = lines_of(ranks != nullptr ? ranks->from_first(unfinished(o)) : unfinished(by_number ? every : o));
+  std::atomic<long> own = static_cast<long>(rank);
+  const auto next = [&, stride = static_cast<long>(size)] { return ranks != nullptr ? ranks->next() : own.fetch_add(stride); };
   std::mutex guard;
-  std::atomic<int> bad = 0, done = 0;
-  reconcile::parallel(o.threads, mine.size(), [&](std::size_t i) {
-    std::string name, line;
-    try {
-      const auto r = solve(mine[i].string(), (fs::path(o.out) / mine[i].filename()).string(), o, 1, false, name);
-      line = name + ": " + r.verdict;
-      for (const auto& e : r.effects) line += " " + reconcile::info(e.effect).name;
-    } catch (const std::exception& error) {
-      ++bad;
-      line = mine[i].filename().string() + ": refused: " + error.what();
+  std::atomic<long> bad = 0, done = 0;
+  const int threads = o.threads > 0 ? o.threads : size > 1 ? 1 : 2;
+  reconcile::parallel(threads, static_cast<std::size_t>(threads), [&](std::size_t) {
+    for (long i = next(); i < static_cast<long>(names.size()); i = next()) {
+      const std::string& folder = names[static_cast<std::size_t>(i)];
+      if (by_number && !o.again && fs::exists(fs::path(o.out) / folder / "report.json")) continue;
+      std::string name, line;
+      try {
+        const auto r = solve((fs::path(o.all) / folder).string(), (fs::path(o.out) / folder).string(), o, 1, false, name);
+        line = name + ": " + r.verdict;
+        for (const auto& e : r.effects) line += " " + reconcile::info(e.effect).name;
+      } catch (const std::exception& error) {
+        ++bad;
+        line = folder + ": refused: " + error.what();
+      }
+      const std::lock_guard lock(guard);
+      std::fprintf(stderr, "%ld/%zu %s\n", ++done, names.size(), line.c_str());
     }
-    const std::lock_guard lock(guard);
-    std::fprintf(stderr, "%d/%zu %s\n", ++done, mine.size(), line.c_str());
   });
-  return bad > 0 ? kBadInput : kDone;
+  const long refused = ranks != nullptr ? ranks->sum(bad) : bad.load();
+  return refused > 0 ? kBadInput : kDone;
 }
 
 }  // namespace
@@ -106,8 +147,9 @@ void add_reconcile(CLI::App& app, Action& action) {
   command->add_option("dataset", o->dataset, "Folder with experiment.yaml (filum-experiment/1)");
   command->add_option("--all", o->all, "Every dataset in this folder; finished ones are left alone");
   command->add_option("--out", o->out, "Folder for report.json, report.html and model.yaml")->required();
-  command->add_option("--threads", o->threads, "Threads")->capture_default_str()->check(CLI::Range(1, 256));
+  command->add_option("--threads", o->threads, "Threads; 2, or 1 for each process under mpirun")->check(CLI::Range(1, 256));
   command->add_flag("--again", o->again, "With --all: also those that have a report");
+  command->add_flag("--repeatable", o->repeatable, "Leave the time it took out of the report, so that equal data give equal files");
   command->callback([o, &action] {
     action.run = [o] {
       if (o->dataset.empty() == o->all.empty()) throw InputError("reconcile", "DATASET", o->dataset.empty() ? "nothing" : "a folder and --all", "one folder, or --all FOLDER");

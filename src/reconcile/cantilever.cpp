@@ -16,13 +16,15 @@ namespace {
 constexpr int kSteps = 40;
 constexpr double kGravity = 9.81;
 
+using Stations = std::array<double, kSteps + 1>;
+
 struct Shape {
   double drop = 0.0, reach = 1.0;  // over L
-  std::array<double, kSteps + 1> curvature{};  // times L, from the tip
+  Stations curvature{};            // times L, from the tip
 };
 
 /// The shape from tip angle `tip`; returns theta at the clamp. Arc length x runs from the tip.
-double shoot(double G, const std::array<double, kSteps + 1>& rest, double tip, Shape& shape) {
+double shoot(double G, const Stations& rest, double tip, Shape& shape) {
   const double h = 1.0 / kSteps;
   double theta = tip, bend = 0.0, drop = 0.0, reach = 0.0;  // bend = theta' - rest, along s towards the clamp
   for (int i = 0; i < kSteps; ++i) {
@@ -41,7 +43,7 @@ double shoot(double G, const std::array<double, kSteps + 1>& rest, double tip, S
   return theta;
 }
 
-Shape elastica(double G, const std::array<double, kSteps + 1>& rest, double& tip) {
+Shape elastica(double G, const Stations& rest, double& tip) {
   Shape shape;
   for (int i = 0; i < 30; ++i) {
     const double f = shoot(G, rest, tip, shape);
@@ -68,8 +70,12 @@ class Cantilever final : public RigModel {
   std::vector<double> guess() const override;
   std::vector<Form> forms() const override;
   void rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const override;
+  BentThread bent_thread(const Trial& t, const Setting& s, Eigen::Index sample) const override;
 
  private:
+  /// Calls each(sample, length, weight, natural curvature from the tip, shape) in turn while it answers true.
+  template <class Each>
+  void trace(const Trial& t, const Setting& s, const Each& each) const;
   static double length_at(const Trial& t, Eigen::Index n) {
     if (t.has("overhang")) return t.at("overhang")[n];
     if (t.size("overhang") > 0.0) return t.size("overhang");
@@ -80,14 +86,15 @@ class Cantilever final : public RigModel {
   double longest_ = 0.0, span_ = 1.0;
 };
 
-void Cantilever::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
+template <class Each>
+void Cantilever::trace(const Trial& t, const Setting& s, const Each& each) const {
   const double d = t.size("diameter"), E = s.base[0] * s.scale;
   const double weight = 16.0 * t.size("density") * kGravity / (E * d * d);
   const double *curl = s.on(Effect::rest_curvature), *creep = s.on(Effect::bending_creep), *set = s.on(Effect::permanent_set);
   const double side = t.word("orientation") == "up" ? -1.0 : 1.0;
-  out.resize(t.samples(), static_cast<Eigen::Index>(data().outputs.size()));
-  std::array<double, kSteps + 1> most{};  // [1/m], at a distance from the tip in parts of the longest overhang
+  Stations most{};  // [1/m], at a distance from the tip in parts of the longest overhang
   double tip = 0.0, last_L = -1.0, last_G = -1.0;
+  Stations rest{};
   Shape shape;
   for (Eigen::Index n = 0; n < t.time.size(); ++n) {
     const double L = std::max(length_at(t, n), 1e-9);
@@ -98,7 +105,7 @@ void Cantilever::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) con
          : s.form(Effect::bending_creep) == 1 ? 1.0 + creep[0] * -std::expm1(-since / creep[1]) : 1.0 + creep[0] * std::pow(since / span_, creep[1]);
     }
     if (n == 0 || set != nullptr || std::abs(L - last_L) > 1e-12 * L || std::abs(G - last_G) > 1e-9 * G) {
-      std::array<double, kSteps + 1> rest{};
+      rest.fill(0.0);
       for (int i = 0; i <= kSteps; ++i) {
         if (curl != nullptr) {
           const double away = s.form(Effect::rest_curvature) == 0 ? 1.0 : 2.0 * static_cast<double>(i) / kSteps;
@@ -121,9 +128,27 @@ void Cantilever::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) con
         most[static_cast<std::size_t>(i)] = std::max(most[static_cast<std::size_t>(i)], kappa);
       }
     }
+    if (!each(n, L, G, rest, shape)) return;
+  }
+}
+
+void Cantilever::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
+  out.resize(t.samples(), static_cast<Eigen::Index>(data().outputs.size()));
+  trace(t, s, [&](Eigen::Index n, double L, double, const Stations&, const Shape& shape) {
     for (std::size_t c = 0; c < data().outputs.size(); ++c)
       out(n, static_cast<Eigen::Index>(c)) = L * (data().outputs[c] == "tip_drop" ? shape.drop : shape.reach);
-  }
+    return true;
+  });
+}
+
+RigModel::BentThread Cantilever::bent_thread(const Trial& t, const Setting& s, Eigen::Index sample) const {
+  BentThread out;
+  trace(t, s, [&](Eigen::Index n, double L, double G, const Stations& rest, const Shape&) {
+    if (n < sample) return true;
+    out = {L, G, std::vector<double>(rest.rbegin(), rest.rend())};
+    return false;
+  });
+  return out;
 }
 
 std::vector<double> Cantilever::guess() const {

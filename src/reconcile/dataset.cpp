@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "base/error.h"
@@ -11,6 +12,7 @@
 #include "base/units.h"
 #include "base/yaml_file.h"
 #include "reconcile/csv_table.h"
+#include "reconcile/video_trial.h"
 
 namespace filum::reconcile {
 namespace {
@@ -226,22 +228,65 @@ void check_output(Dataset& d, const Trial& t, const std::string& name) {
   if (there > 2 && low == high) note(d, t.file + ": channel " + name + " is constant: nothing was measured there or the channel is dead");
 }
 
-void read_samples(Dataset& d, Trial& t) {
-  const fs::path relative(t.file);
-  const std::string path = (fs::path(d.folder) / relative).string();
-  const CsvTable table = CsvTable::load(path);
+/// A channel of a video at the times of the trial; NaN beside lost frames and outside the video.
+Eigen::VectorXd at_times(const Eigen::VectorXd& time, const Eigen::VectorXd& value, const Eigen::VectorXd& wanted) {
+  Eigen::VectorXd out = Eigen::VectorXd::Constant(wanted.size(), NAN);
+  Eigen::Index k = 0;
+  for (Eigen::Index n = 0; n < wanted.size(); ++n) {
+    if (wanted[n] < time[0] || wanted[n] > time[time.size() - 1]) continue;
+    while (k + 2 < time.size() && time[k + 1] < wanted[n]) ++k;
+    const double w = (wanted[n] - time[k]) / (time[k + 1] - time[k]);
+    out[n] = w <= 0.0 ? value[k] : w >= 1.0 ? value[k + 1] : value[k] + w * (value[k + 1] - value[k]);
+  }
+  return out;
+}
+
+bool is_video(const fs::path& file) {
+  const std::string kind = file.extension().string();
+  return kind == ".mp4" || kind == ".avi" || kind == ".mkv" || kind == ".mov";
+}
+
+/// Channels of a video trial, the table beside it (same name, .csv) giving time and what no camera sees.
+CsvTable read_video_samples(Dataset& d, Trial& t, const VideoSetup& setup) {
+  const VideoChannels video = follow_video(setup, d.rig, t.word("mode"));
+  const fs::path beside = fs::path(setup.file).replace_extension(".csv");
+  const bool with_table = fs::is_regular_file(beside);
+  CsvTable table;
+  table.file = with_table ? beside.string() : setup.file;
+  if (with_table) table = CsvTable::load(beside.string());
+  const auto seen = [&](const Channel& c) { return video.value.count(c.name) > 0; };
+  for (const Channel& c : d.channels)
+    if (!seen(c) && !with_table && c.name != "time")
+      throw InputError(setup.file, "channel " + c.name, "no table beside the video", beside.filename().string() + " with time and a column \"" + c.column + "\"");
+  t.time = video.time;
+  for (const Channel& c : d.channels) {
+    if (seen(c) || !with_table) continue;
+    Eigen::VectorXd v = (table.numbers(table.column(c.column)).array() * c.scale + c.shift).matrix();
+    if (c.name == "time") check_time(table, c.column, v), t.time = std::move(v);
+    else t.data[c.name] = std::move(v);
+  }
+  if (!with_table) table.line.assign(static_cast<std::size_t>(t.time.size()), 0), table.rows.resize(table.line.size());
+  for (const Channel& c : d.channels) {
+    if (!seen(c)) continue;
+    t.data[c.name] = at_times(video.time, video.value.at(c.name), t.time);
+    std::vector<double> sd;
+    for (const double x : video.sd.at(c.name))
+      if (std::isfinite(x) && x > 0) sd.push_back(x);
+    if (!sd.empty()) std::nth_element(sd.begin(), sd.begin() + static_cast<std::ptrdiff_t>(sd.size() / 2), sd.end()), t.tracked[c.name] = sd[sd.size() / 2];
+    std::ostringstream text;
+    text << t.file << ": " << c.name << " followed in the video, 1 sd of a sample " << t.tracked[c.name] << " m";
+    note(d, text.str());
+  }
+  for (const std::string& n : video.notices) note(d, t.file + ": " + n);
+  return table;
+}
+
+CsvTable read_table_samples(Dataset& d, Trial& t, const std::string& path) {
+  CsvTable table = CsvTable::load(path);
   for (const Channel& c : d.channels) {
     Eigen::VectorXd v = (table.numbers(table.column(c.column)).array() * c.scale + c.shift).matrix();
-    if (c.name == "time") {
-      check_time(table, c.column, v);
-      t.time = std::move(v);
-      continue;
-    }
-    for (const double x : v) t.missing += std::isfinite(x) ? 0 : 1;
-    if (c.input)
-      for (Eigen::Index i = 0; i < v.size(); ++i)
-        if (!std::isfinite(v[i])) note(d, t.file + ": input " + c.name + " has missing samples; those rows are left out");
-    t.data[c.name] = std::move(v);
+    if (c.name == "time") check_time(table, c.column, v), t.time = std::move(v);
+    else t.data[c.name] = std::move(v);
   }
   const auto used = [&](const std::string& h) { return std::any_of(d.channels.begin(), d.channels.end(), [&](const Channel& c) { return c.column == h; }); };
   for (const std::string& h : table.header)
@@ -249,6 +294,18 @@ void read_samples(Dataset& d, Trial& t) {
   if (t.time.size() == 0) {
     t.clocked = false;
     t.time = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(table.rows.size()), 0.0, static_cast<double>(table.rows.size()) - 1.0);
+  }
+  return table;
+}
+
+void read_samples(Dataset& d, Trial& t, const std::optional<VideoSetup>& video) {
+  const std::string path = (fs::path(d.folder) / t.file).string();
+  const CsvTable table = video ? read_video_samples(d, t, *video) : read_table_samples(d, t, path);
+  for (const Channel& c : d.channels) {
+    if (c.name == "time") continue;
+    bool whole = true;
+    for (const double x : t.at(c.name)) t.missing += std::isfinite(x) ? 0 : 1, whole = whole && std::isfinite(x);
+    if (c.input && !whole) note(d, t.file + ": input " + c.name + " has missing samples; those rows are left out");
   }
   check_sizes(d, t, table);
   for (const std::string& name : d.outputs) check_output(d, t, name);
@@ -276,7 +333,9 @@ void read_trial(const YamlNode& file, const YamlNode& node, Dataset& d, const Tr
   t.file = node.text("file");
   const fs::path path(t.file);
   if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end()) node.refuse("file", "a file inside the dataset's folder");
-  if (path.extension() != ".csv") node.refuse("file", "a .csv file (this build does not track video)");
+  const bool video = is_video(path);
+  if (path.extension() != ".csv" && !video) node.refuse("file", "a .csv file or a video (.mp4, .avi, .mkv, .mov)");
+  if (video && !node.has("video")) node.refuse("video", "a map with scale (length of a pixel) and points (name, x, y in the first frame) for a video");
   for (const Trial& other : d.trials)
     if (other.file == t.file) node.refuse("file", "each file once");
   t.repeat = node.text_or("repeat", "");
@@ -299,7 +358,9 @@ void read_trial(const YamlNode& file, const YamlNode& node, Dataset& d, const Tr
   } else if (needs_mode) {
     node.refuse("protocol", "a map with at least mode: compression, tension or shear");
   }
-  read_samples(d, t);
+  std::optional<VideoSetup> setup;
+  if (video) setup = read_video(node.map("video"), (fs::path(d.folder) / t.file).string(), d.rig);
+  read_samples(d, t, setup);
   drop_rows_without_input(d, t);
   d.trials.push_back(std::move(t));
 }

@@ -31,6 +31,7 @@ struct Trial {
   bool clocked = true;
   std::map<std::string, Eigen::VectorXd> data;  // [SI] channel -> samples, NaN where missing
   int missing = 0;
+  std::map<std::string, double> tracked;        // [SI], median standard deviation of a channel that a video gave
 
   int samples() const { return static_cast<int>(time.size()); }
   bool has(const std::string& channel) const { return data.count(channel) > 0; }

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "reconcile/confirm.h"
 #include "reconcile/search.h"
 
 namespace filum::reconcile {
@@ -162,7 +163,11 @@ std::vector<const Fit*> rivals_of(const Search& search, const Fit& winner, const
   const double tie = unsure ? rules.untestable_tie : rules.tie;
   for (const Fit& f : search.candidates()) {
     if (&f == &winner || f.forms.size() > winner.forms.size()) continue;
-    if (search.bic(f) - search.bic(winner) < tie && search.explained(f) >= rules.explained) out.push_back(&f);
+    // a rival whose deciding protocol was not run is listed as not testable: it must come nearer to be a rival
+    const bool aside = !unsure && std::any_of(f.forms.begin(), f.forms.end(), [&](const Form* g) {
+      return std::any_of(hidden.begin(), hidden.end(), [&](const NotTestable& n) { return n.effect == g->effect; });
+    });
+    if (search.bic(f) - search.bic(winner) < (aside ? rules.aside_tie : tie) && search.explained(f) >= rules.explained) out.push_back(&f);
   }
   return out;
 }
@@ -187,11 +192,18 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   r.held_out_how = c.how;
   const bool holds = !c.done || c.explained >= r.rules.held_out;
   const double explained = search.explained(winner);
+  const bool confirmed = confirm(search, winner, options, r);
   r.effects = effect_estimates(fitter, winner, search.dispersion());
   for (const Fit& other : search.other_forms(winner, r.rules.tie)) widen_by_forms(r.effects, effect_estimates(fitter, other, search.dispersion()));
   r.baseline = baseline_estimates(fitter, winner, search.dispersion());
   for (const Fit& f : search.candidates())
     if (&f != &winner && r.rivals.size() < 6) r.rivals.push_back({effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""});
+  if (!confirmed) {
+    r.verdict = "unknown";
+    r.effects.clear();
+    say(r, "Something is missing. The reduced model would name " + names(effects_in(winner)) + ", but " + r.confirmation->solver + " does not bear it out.");
+    return;
+  }
   if (explained < r.rules.explained || !holds) {
     r.verdict = "unknown";
     r.effects.clear();
@@ -225,6 +237,7 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   say(r, "These trials cannot tell " + names(effects_in(winner)) + " from " + names(effects_in(*rivals[0])) + ".");
   const Screen screen(fitter, search.base());
   r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
+  r.masked = screen.score(*winner.forms[0], winner.params[0]).masked;
   r.next = next_experiment(fitter, winner, *rivals[0]);
 }
 
@@ -308,7 +321,11 @@ Result reconcile(const Dataset& d, const Options& options) {
     search.run();
     if (options.progress) options.progress("challenge", 0.85);
     r.baseline_alone = baseline_estimates(search.fitter(), search.base(), std::max(1.0, search.structure(search.base()).dispersion));
+    r.detection = detect(search, r.forms);
     const Fit* winner = choose(search, r.rules);
+    // a line leaves no window's sum behind: it was tested in the spectrum
+    const bool line = winner != nullptr && std::any_of(winner->forms.begin(), winner->forms.end(), [](const Form* f) { return f->line; });
+    if (winner != nullptr && !line && r.detection->p > r.rules.detect_p) winner = nullptr;
     if (winner != nullptr) name(search, *winner, r, options);
     else name_nothing(search, r, options);
     finish(search, winner, r);

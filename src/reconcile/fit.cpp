@@ -95,6 +95,7 @@ Eigen::VectorXd Fitter::residual(int trial, const Setting& s, std::vector<Eigen:
   const Trial& t = d.trials[static_cast<std::size_t>(trial)];
   Eigen::MatrixXd out;
   model_.simulate(t, s, out);
+  if (!correction.empty() && correction[static_cast<std::size_t>(trial)].size() > 0) out += correction[static_cast<std::size_t>(trial)];
   const Eigen::MatrixXd columns = model_.free_columns(t, s);
   const auto& valid = valid_[static_cast<std::size_t>(trial)];
   Eigen::Index total = 0;

@@ -54,6 +54,8 @@ class Fitter {
 
   /// Trials that take part; by default those that are not held out.
   std::vector<bool> use;
+  /// Added to what the rig's model predicts, trial by trial (confirm.h); empty: nothing.
+  std::vector<Eigen::MatrixXd> correction;
 
   /// Fit from a starting point. An empty `params` takes the first start of each form.
   Fit fit(const std::vector<const Form*>& forms, const std::vector<double>& base, const std::vector<std::vector<double>>& params,

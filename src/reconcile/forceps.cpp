@@ -39,7 +39,10 @@ class Forceps final : public RigModel {
       const bool strain = data().outputs[c] == "strain_counts";
       Eigen::VectorXd x = t.at(strain ? "angle" : "grip_force");
       const double* play = s.on(Effect::hysteresis);
-      if (play != nullptr && (s.form(Effect::hysteresis) == 0) == strain) follow(x, play[0]);
+      if (play != nullptr && (s.form(Effect::hysteresis) != 1) == strain) {
+        if (s.form(Effect::hysteresis) == 2) behind(x, play[0]);
+        else follow(x, play[0]);
+      }
       const double gain = s.scale * s.base[strain ? 0 : 2], offset = s.base[strain ? 1 : 3];
       Eigen::VectorXd y = (offset + gain * x.array()).matrix();
       if (const double* p = s.on(Effect::bridge_nonlinearity); p != nullptr && (s.form(Effect::bridge_nonlinearity) < 2) == strain) {
@@ -68,6 +71,7 @@ class Forceps final : public RigModel {
       f.push_back({Effect::bridge_nonlinearity, 1, "quadratic", {{"quadratic", "count/rad2", -2 * q, 2 * q, false}}, {{0.05 * q}}, false});
       f.push_back({Effect::bridge_nonlinearity, 0, "quadratic and cubic", {{"quadratic", "count/rad2", -2 * q, 2 * q, false}, {"cubic", "count/rad3", -2 * c, 2 * c, false}}, {{0.05 * q, 0.02 * c}}, false});
       f.push_back({Effect::hysteresis, 0, "play of the angle", {{"width", "rad", 1e-4 * angle_, 0.5 * angle_, true}}, {{0.02 * angle_}, {0.1 * angle_}}, false});
+      if (one_way()) f.push_back({Effect::hysteresis, 2, "closing and opening apart by the width", {{"width", "rad", 1e-4 * angle_, 0.5 * angle_, true}}, {{0.02 * angle_}, {0.1 * angle_}}, false});
       f.push_back({Effect::cross_talk, 0, "proportional to grip force", {{"gain", "count/N", -k, k, false}}, {{0.03 * k}}, false});
     }
     if (has_pressure) {
@@ -84,6 +88,24 @@ class Forceps final : public RigModel {
   static void follow(Eigen::VectorXd& x, double width) {
     double held = x[0];
     for (double& v : x) v = held = std::clamp(held, v - 0.5 * width, v + 0.5 * width);
+  }
+
+  /// Whether every record goes one way only, and records of both ways are there.
+  bool one_way() const {
+    bool up = false, down = false;
+    for (const Trial& t : data().trials) {
+      const Eigen::VectorXd& x = t.at("angle");
+      double rise = 0.0, fall = 0.0;
+      for (Eigen::Index n = 1; n < x.size(); ++n) (x[n] > x[n - 1] ? rise : fall) += std::abs(x[n] - x[n - 1]);
+      if (std::min(rise, fall) > 0.1 * std::max(rise, fall)) return false;
+      (rise > fall ? up : down) = true;
+    }
+    return up && down;
+  }
+
+  /// Half the width behind the motion from the first sample on: what a record of one direction shows of play that was taken up before.
+  static void behind(Eigen::VectorXd& x, double width) {
+    x.array() -= 0.5 * width * (x[x.size() - 1] >= x[0] ? 1.0 : -1.0);
   }
 
   void thermal(std::vector<Form>& f, bool has_strain, bool has_pressure) const {

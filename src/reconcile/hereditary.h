@@ -4,6 +4,7 @@
 // Inelasticity, 1998, eq. 10.3.12). Test: hereditary_test (closed form of ramp and hold).
 
 #include <Eigen/Core>
+#include <cmath>
 #include <vector>
 
 namespace filum::reconcile {
@@ -28,5 +29,8 @@ Kernel radial_drainage(double g1, double diffusivity, double size);
 void relax(const Kernel& k, const Eigen::VectorXd& time, Eigen::Ref<Eigen::VectorXd> f);
 /// The inverse problem: from the response with memory (prescribed) to the elastic one.
 void creep(const Kernel& k, const Eigen::VectorXd& time, Eigen::Ref<Eigen::VectorXd> f);
+
+/// Share of the full first-cycle softening at x = (Wmax - W)/W0: exponential, error function (Ogden & Roxburgh 1999), or x/(1 + x).
+inline double softening_share(double x, int kind) { return kind == 0 ? -std::expm1(-x) : kind == 1 ? std::erf(x) : x / (1.0 + x); }
 
 }  // namespace filum::reconcile

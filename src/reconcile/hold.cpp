@@ -121,6 +121,8 @@ double squared_rms(const std::vector<Spectrum>& all, double low, double high, do
 void add_line(const Fitter& fitter, const Fit& base, const Form& form, double low, double high, const std::vector<Spectrum>& all, std::vector<Found>& found) {
   const Line line = strongest_line(fitter, base, low, high);
   if (line.gain < line.columns + 4.5 * std::sqrt(2.0 * line.columns) + 14.0) return;
+  // at the edge of its band it is the skirt of what lies beyond
+  if (form.effect == Effect::pulsation && std::min(line.frequency - low, high - line.frequency) < all[0].step) return;
   const double w = 2.5 * all[0].step;
   const double rate = all[0].rate;
   double at = std::fmod(line.frequency, rate);  // where it appears when folded
@@ -131,6 +133,12 @@ void add_line(const Fitter& fitter, const Fit& base, const Form& form, double lo
   found.push_back({form.effect, &form, at - w, at + w, line.frequency, squared_rms(all, at - w, at + w, around), line.gain, narrow.bins});
 }
 
+/// A beat is no pure sine: its second and third harmonic belong to it.
+bool overtone(const Found& f, double frequency, double step) {
+  if (f.effect != Effect::pulsation) return false;
+  return std::abs(frequency - 2.0 * f.frequency) < 3.0 * step || std::abs(frequency - 3.0 * f.frequency) < 3.0 * step;
+}
+
 /// Power beside what was named, in octaves: what nobody explains.
 Band leftover(const std::vector<Spectrum>& all, const std::vector<Found>& found) {
   Band worst;
@@ -138,7 +146,7 @@ Band leftover(const std::vector<Spectrum>& all, const std::vector<Found>& found)
   for (Spectrum& s : rest)
     for (const Found& f : found)
       for (std::size_t k = s.power.size(); k-- > 0;)
-        if (s.frequency[k] >= f.low - 2 * s.step && s.frequency[k] <= f.high + 2 * s.step)
+        if ((s.frequency[k] >= f.low - 2 * s.step && s.frequency[k] <= f.high + 2 * s.step) || overtone(f, s.frequency[k], s.step))
           s.power.erase(s.power.begin() + static_cast<std::ptrdiff_t>(k)), s.frequency.erase(s.frequency.begin() + static_cast<std::ptrdiff_t>(k));
   const double top = all[0].frequency.back();
   for (double f = std::max(0.12, 4.0 * all[0].step); f < top; f *= 1.6) {

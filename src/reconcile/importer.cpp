@@ -78,15 +78,57 @@ std::vector<std::string> muscle(const std::string& folder, const std::string& ou
   return made;
 }
 
+/// A three-axis cell is read as two channels of a bridge at a time: load on the axis itself stands where forceps have their angle (1 N as 1
+/// rad, since a bridge answers to what bends it), load on another axis where they have the grip, so that cross-talk is cross-talk.
+/// Published in gram-force, free of the weight of the cell's own parts ("corrected"); no clock, no replicates.
+std::vector<std::string> load_cells(const std::string& folder, const std::string& out) {
+  constexpr double kGramForce = 9.80665e-3;  // [N]
+  const std::string axes = "xyz";
+  std::vector<std::string> made;
+  for (const char cell : {'1', '2', '3', '4'}) {
+    const CsvTable table = CsvTable::load((fs::path(folder) / (std::string("3axisCell") + cell + "CalibrationData.csv")).string());
+    const auto column = [&](const std::string& name) { return table.numbers(table.column(name)); };
+    for (const char own : axes)
+      for (const char other : axes) {
+        if (own == other) continue;
+        const fs::path to = fs::path(out) / (std::string("loadcell-") + cell + "-" + own + "-by-" + other);
+        fs::create_directories(to);
+        const Eigen::VectorXd load = column(std::string("force_") + own) * kGramForce, side = column(std::string("force_") + other) * kGramForce, counts = column(std::string("corrected_") + own);
+        const Eigen::VectorXd third = column(std::string("force_") + static_cast<char>('x' + 'y' + 'z' - own - other));
+        std::string yaml = std::string("format: filum-experiment/1\ntitle: \"Load cell ") + cell + ", axis " + own + " against load on " + other +
+                           " (1 rad stands for 1 N)\"\nsource: FARE-KE repository, 2025\nrig: forceps-bridge\nspecimen: { bits: 24, reference: \"5 V\" }\n"
+                           "model: { file: forceps/linear, free: [strain_gain, strain_offset] }\nchannels:\n  - { name: angle, column: own_N, unit: rad, kind: input }\n"
+                           "  - { name: grip_force, column: other_N, unit: N, kind: input }\n  - { name: strain_counts, column: counts, unit: count, kind: output }\ntrials:\n";
+        for (const bool aside : {false, true}) {
+          std::ostringstream s;
+          s << "own_N,other_N,counts\n";
+          for (Eigen::Index i = 0; i < load.size(); ++i) {
+            if (third[i] != 0.0 || (aside ? load[i] : side[i]) != 0.0) continue;
+            char line[120];
+            std::snprintf(line, sizeof line, "%.7g,%.7g,%.9g\n", load[i], side[i], counts[i]);
+            s << line;
+          }
+          const std::string file = aside ? "aside.csv" : "along.csv";
+          write_whole((to / file).string(), s.str());
+          yaml += "  - { file: " + file + " }\n";
+        }
+        write_whole((to / "experiment.yaml").string(), yaml);
+        made.push_back(to.filename().string());
+      }
+  }
+  return made;
+}
+
 }  // namespace
 
-std::vector<std::string> import_kinds() { return {"brain-budday2017", "muscle-vanloocke"}; }
+std::vector<std::string> import_kinds() { return {"brain-budday2017", "muscle-vanloocke", "loadcells-fareke"}; }
 
 std::vector<std::string> import_data(const std::string& kind, const std::string& folder, const std::string& out) {
   if (!fs::is_directory(folder)) throw InputError(folder, "folder", "no such folder", "the folder of the published tables");
   if (kind == "brain-budday2017") return brain(folder, out);
   if (kind == "muscle-vanloocke") return muscle(folder, out);
-  throw InputError("import", "KIND", kind, "brain-budday2017 or muscle-vanloocke");
+  if (kind == "loadcells-fareke") return load_cells(folder, out);
+  throw InputError("import", "KIND", kind, "brain-budday2017, muscle-vanloocke or loadcells-fareke");
 }
 
 }  // namespace filum::reconcile

@@ -72,8 +72,17 @@ class RigModel {
   /// Order of the polynomial in time that every record may have, -1: none.
   virtual int free_polynomial() const { return -1; }
 
+  /// What the trainer's solvers need to know beyond rig() (full_solver.h): thread and blade.
+  struct BentThread {
+    double length = 0.0, G = 0.0;  // [m]; weight over bending stiffness
+    std::vector<double> rest;      // natural curvature times the length, from the clamp to the tip
+  };
+  virtual BentThread bent_thread(const Trial&, const Setting&, Eigen::Index /*sample*/) const { return {}; }
+  virtual double punch_stiffness(const Trial&, double /*poissons_ratio*/) const { return 1.0; }  // [m], force per depth and modulus
+
   /// rig(), then the sensor.
   void simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const;
+  void sense(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const;
   /// Forms of the rig and of the sensor.
   std::vector<Form> all_forms() const;
   /// Columns whose amplitudes are free in every record and output: polynomial and lines. samples x columns.

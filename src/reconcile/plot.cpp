@@ -40,6 +40,14 @@ std::string curve(const Curve& c, const Frame& f) {
       points += text;
     }
   }
+  if (c.low.size() > 0) {
+    for (Eigen::Index i = (c.x.size() - 1) / step * step; i >= 0; i -= step) {
+      if (!std::isfinite(c.low[i])) continue;
+      std::snprintf(text, sizeof text, "L%.1f %.1f", f.px(c.x[i]), f.py(c.low[i]));
+      points += text;
+    }
+    return "<path d='" + points + "Z' fill='" + c.colour + "' stroke='none'/>";
+  }
   return "<path d='" + points + "' fill='none' stroke='" + c.colour + "' stroke-width='" + (c.dots ? "2.2" : "1.4") + "' stroke-linecap='round'/>";
 }
 

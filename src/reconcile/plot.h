@@ -11,6 +11,7 @@ struct Curve {
   Eigen::VectorXd x, y;
   std::string colour;
   bool dots = false;
+  Eigen::VectorXd low;  // not empty: the area between it and y is filled
 };
 
 struct PlotText {

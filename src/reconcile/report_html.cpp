@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <sstream>
 
+#include "reconcile/hardware.h"
 #include "reconcile/plot.h"
 #include "reconcile/report.h"
 
@@ -35,15 +37,41 @@ std::string unit_of(const Dataset& d, const std::string& channel) {
   return "m";
 }
 
+/// Least and most of a trial's replicates at its own times; empty where it has none.
+Curve replicate_band(const Dataset& d, std::size_t trial, const std::string& output) {
+  const Trial& t = d.trials[trial];
+  Curve band{t.time, {}, "#e4e4e4", false, {}};
+  if (t.repeat.empty()) return band;
+  int others = 0;
+  Eigen::VectorXd low = t.at(output), high = low;
+  for (const Trial& o : d.trials) {
+    if (&o == &t || o.repeat != t.repeat || d.protocol_text(o) != d.protocol_text(t)) continue;
+    ++others;
+    Eigen::Index k = 0;
+    for (Eigen::Index n = 0; n < t.time.size(); ++n) {
+      const double at = o.time[0] + t.time[n] - t.time[0];
+      while (k + 2 < o.time.size() && o.time[k + 1] < at) ++k;
+      const double w = std::clamp((at - o.time[k]) / (o.time[k + 1] - o.time[k]), 0.0, 1.0), y = o.at(output)[k] + w * (o.at(output)[k + 1] - o.at(output)[k]);
+      low[n] = std::fmin(low[n], y);
+      high[n] = std::fmax(high[n], y);
+    }
+  }
+  if (others > 0) band.y = high, band.low = low;
+  return band;
+}
+
 void curves(const Dataset& d, const Result& r, std::ostringstream& s) {
-  s << "<h2>Measured, before and after</h2><p>Grey: measured; blue: the baseline, refitted; red: with what the verdict names. Each record keeps its own stiffness.</p><div class='plots'>";
+  s << "<h2>Measured, before and after</h2><p>Grey: measured; pale: from the least to the most of its replicates; blue: the baseline, refitted; red: with what the verdict names. Each record keeps its own stiffness.</p><div class='plots'>";
   int drawn = 0;
   for (std::size_t i = 0; i < d.trials.size() && drawn < 12; ++i) {
     if (i >= r.before.predicted.size() || r.before.predicted[i].empty()) continue;
     const Trial& t = d.trials[i];
     for (std::size_t c = 0; c < d.outputs.size() && drawn < 12; ++c, ++drawn) {
-      std::vector<Curve> lines = {{t.time, t.at(d.outputs[c]), "#999", true}, {t.time, r.before.predicted[i][c], "#26c", false}};
-      if (i < r.after.predicted.size() && !r.after.predicted[i].empty()) lines.push_back({t.time, r.after.predicted[i][c], "#c22", false});
+      std::vector<Curve> lines;
+      if (Curve band = replicate_band(d, i, d.outputs[c]); band.low.size() > 0) lines.push_back(std::move(band));
+      lines.push_back({t.time, t.at(d.outputs[c]), "#999", true, {}});
+      lines.push_back({t.time, r.before.predicted[i][c], "#26c", false, {}});
+      if (i < r.after.predicted.size() && !r.after.predicted[i].empty()) lines.push_back({t.time, r.after.predicted[i][c], "#c22", false, {}});
       s << plot({t.file, t.clocked ? "time [s]" : "sample", d.outputs[c] + " [" + unit_of(d, d.outputs[c]) + "]"}, lines);
     }
   }
@@ -73,6 +101,28 @@ void heat(const Dataset& d, const Result& r, std::ostringstream& s) {
   if (r.where.empty()) return;
   s << "<table>" << row({"record", "phase", "range", "share of the excess"}, "th");
   for (std::size_t i = 0; i < r.where.size() && i < 8; ++i) s << row({r.where[i].trial, r.where[i].phase, r.where[i].range, number(100 * r.where[i].share, 3) + " %"});
+  s << "</table>\n";
+}
+
+void checks(const Result& r, std::ostringstream& s) {
+  if (r.detection) {
+    const Detection& x = *r.detection;
+    s << "<h2>Is anything missing?</h2><p>The largest sum of the baseline's residual over any window is " << number(x.statistic, 3) << " standard deviations (" << escaped(x.trial) << ", " << number(x.from) << " s to " << number(x.to)
+      << " s), the best score test of the catalogue " << number(x.score, 4) << ". The rarer of the two among " << x.repetitions << " simulated repetitions in which the baseline is true: p = " << number(x.p, 2)
+      << ". What lies beyond the noise amounts to " << number(100 * x.excess, 2) << " % of full scale; " << number(100 * r.rules.materiality, 2) << " % is material.</p>\n";
+  }
+  if (!r.confirmation) return;
+  const Confirmation& c = *r.confirmation;
+  s << "<h2>Full re-simulation</h2>";
+  if (!c.ran) {
+    s << "<p>" << escaped(c.solver) << " did not come to rest for these values; the reduced model stands alone.</p>\n";
+    return;
+  }
+  s << "<p>Baseline and winner were fitted again with " << escaped(c.solver) << ". It differs from the reduced model by " << number(100 * c.difference, 2) << " % of full scale before that, and from itself with half the mesh by "
+    << number(100 * c.mesh, 2) << " %. Evidence " << number(-c.evidence, 4) << "; chi-squared a sample " << number(c.chi2_before, 3) << " before, " << number(c.chi2_after, 3) << " after; the name "
+    << (c.holds ? "holds" : "does not hold") << ".</p><table>" << row({"parameter", "by the full solver"}, "th");
+  for (const NamedEffect& e : c.values)
+    for (const Estimate& p : e.parameters) s << row({info(e.effect).name + ": " + p.name, interval(p)});
   s << "</table>\n";
 }
 
@@ -128,8 +178,8 @@ void residual_after(const Dataset& d, const Result& r, std::ostringstream& s) {
       f[k] = static_cast<double>(k + 1) / span;
       p[k] = std::log10(std::max((re * re + im * im) / static_cast<double>(v.size()), 1e-300));
     }
-    s << "<h2>What is left afterwards</h2><div class='plots'>" << plot({"autocorrelation, " + d.trials[i].file, "lag [samples]", "correlation"}, {{x, a, "#444", false}})
-      << plot({"spectrum, " + d.trials[i].file, "frequency [Hz]", "log10 power"}, {{f, p, "#444", false}}) << "</div>\n";
+    s << "<h2>What is left afterwards</h2><div class='plots'>" << plot({"autocorrelation, " + d.trials[i].file, "lag [samples]", "correlation"}, {{x, a, "#444", false, {}}})
+      << plot({"spectrum, " + d.trials[i].file, "frequency [Hz]", "log10 power"}, {{f, p, "#444", false, {}}}) << "</div>\n";
     return;
   }
 }
@@ -140,17 +190,22 @@ void closing(const Dataset& d, const Result& r, const std::string& program, std:
     for (const Term& t : r.shape) s << row({t.name, number(t.coefficient, 3), number(t.stability, 2)});
     s << "</table>\n";
   }
-  if (r.verdict == "ambiguous") s << "<h2>Rivals</h2><p>" << r.rivals.size() << " sets explain the records equally well; the signatures of the first two correlate by " << number(r.correlation, 3) << ".</p>\n";
+  if (r.verdict == "ambiguous") s << "<h2>Rivals</h2><p>" << r.rivals.size() << " sets explain the records equally well; the signatures of the first two correlate by " << number(r.correlation, 3) << "; a refit of the baseline hides " << number(100 * r.masked, 3) << " % of the first one's.</p>\n";
   if (r.next) s << "<h2>Next experiment</h2><p>" << escaped(r.next->protocol) << ": " << escaped(r.next->why) << ". It would decide in " << number(100 * r.next->chance, 3) << " % of 50 simulated repetitions.</p>\n";
   s << "<h2>Not testable with these trials</h2><table>" << row({"effect", "why", "what would show it"}, "th");
   for (const NotTestable& n : r.not_testable) s << row({info(n.effect).name, n.why, n.needs});
   s << "</table>\n<h2>Rules</h2><table>" << row({"rule", "value"}, "th");
   const Rules& k = r.rules;
   for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"material change, share of full scale", k.materiality}, {"the same in an eighth of a record", k.window_materiality},
-       {"fall of chi-squared to detect", k.detect}, {"residual structure that proves a gap, sd", k.structure}, {"fall of BIC to accept", k.accept_evidence}, {"share of the gap to be explained", k.explained},
+       {"chance of noise alone to detect", k.detect_p}, {"fall of chi-squared to detect", k.detect}, {"residual structure that proves a gap, sd", k.structure}, {"fall of BIC to accept", k.accept_evidence}, {"share of the gap to be explained", k.explained},
        {"the same on held-out protocols", k.held_out}, {"tie, BIC", k.tie}, {"a further effect: BIC", k.pair_evidence}, {"a further effect: share", k.pair_share}, {"masked share that hides an effect", k.masked}})
     s << row({name, number(value)});
   s << "</table>\n";
+  if (const auto hardware = check_hardware(d); !hardware.empty()) {
+    s << "<h2>What the records say of the hardware</h2><table>" << row({"check", "where", "found"}, "th");
+    for (const HardwareCheck& h : hardware) s << row({h.what, h.where, h.found});
+    s << "</table>\n";
+  }
   if (!d.notices.empty()) {
     s << "<h2>Notices</h2><ul>";
     for (const std::string& n : d.notices) s << "<li>" << escaped(n) << "</li>";
@@ -175,6 +230,7 @@ std::string report_html(const Dataset& d, const Result& r, const std::string& pr
   s << escaped(r.sentence) << "</p>\n";
   curves(d, r, s);
   heat(d, r, s);
+  checks(r, s);
   tables(d, r, s);
   residual_after(d, r, s);
   closing(d, r, program, s);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "reconcile/hardware.h"
 #include "reconcile/hereditary.h"
 #include "reconcile/report.h"
 
@@ -92,6 +93,20 @@ Json report_json(const Dataset& d, const Result& r) {
   Json tried = Json::array();
   for (const Tried& t : r.tried) tried.push_back({{"effects", names(t.effects)}, {"form", t.form}, {"evidence", finite(-t.evidence)}, {"explained", finite(t.explained)}, {"why", t.why}});
   j["tried"] = tried;
+  if (r.verdict == "ambiguous") j["ambiguity"] = {{"correlation", finite(r.correlation)}, {"masked", finite(r.masked)}};
+  if (r.detection)
+    j["detection"] = {{"statistic", finite(r.detection->statistic)}, {"score", finite(r.detection->score)}, {"p", r.detection->p}, {"repetitions", r.detection->repetitions}, {"excess", finite(r.detection->excess)},
+                      {"trial", r.detection->trial}, {"from", finite(r.detection->from)}, {"to", finite(r.detection->to)}};
+  if (r.confirmation) {
+    const Confirmation& c = *r.confirmation;
+    Json values = Json::object();
+    for (const NamedEffect& e : c.values) values[info(e.effect).name] = json_of(e.parameters);
+    j["confirmation"] = {{"solver", c.solver}, {"ran", c.ran}, {"holds", c.holds}, {"difference", finite(c.difference)}, {"mesh", finite(c.mesh)}, {"evidence", finite(-c.evidence)},
+                         {"share", finite(c.share)}, {"parameters", values}};
+  }
+  Json hardware = Json::array();
+  for (const HardwareCheck& h : check_hardware(d)) hardware.push_back({{"check", h.what}, {"where", h.where}, {"found", h.found}});
+  j["hardware"] = hardware;
   j["notices"] = d.notices;
   char hash[20];
   std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(d.hash));

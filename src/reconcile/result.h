@@ -50,6 +50,29 @@ struct Term {
   double coefficient = 0.0, stability = 0.0;
 };
 
+/// What the trainer's own solver says of a name (confirm.h).
+struct Confirmation {
+  std::string solver;
+  bool ran = false, holds = false;
+  double difference = 0.0, mesh = 0.0;          // of full scale: full against reduced model; full against itself at half the step
+  double evidence = 0.0;                        // BIC less that of the baseline, both by the full solver
+  double share = 0.0;                           // of the fall of chi2 that the reduced model promised
+  double material = 0.0;                        // change of the prediction over the materiality
+  double chi2_before = 0.0, chi2_after = 0.0;   // a sample
+  std::vector<NamedEffect> values;              // refitted
+};
+
+/// Whether the baseline's residual is one that noise makes: the statistic against simulated repetitions of the baseline.
+struct Detection {
+  double statistic = 0.0;   // largest whitened sum over any window, over all records
+  double score = 0.0;       // best score test of the catalogue: fall of chi2
+  double p = 1.0;           // of the rarer of the two among the repetitions, (1 + k)/(1 + B), doubled
+  int repetitions = 0;
+  double excess = 0.0;      // of full scale: rms of what is beyond the noise
+  std::string trial;
+  double from = 0.0, to = 0.0;  // [s], the window
+};
+
 struct Result {
   std::string verdict;  // agree, parameter, effect, ambiguous, unknown
   std::string sentence; // the verdict in words and what would change it
@@ -63,10 +86,13 @@ struct Result {
   std::vector<Cell> where;
   std::vector<NotTestable> not_testable;
   std::optional<NextExperiment> next;
+  std::optional<Confirmation> confirmation;
+  std::optional<Detection> detection;
   std::vector<Term> shape;          // of an unknown effect: residual = sum coefficient * term, in units of full scale
   std::vector<Term> residual_terms; // the same of the baseline's residual, whatever the verdict (for comparison, see baselines.py)
   double dispersion = 1.0, structure_before = 0.0, structure_after = 0.0;
   double correlation = 0.0;         // of the signatures of the first two rivals
+  double masked = 0.0;              // share of the first rival's signature that a refit of the baseline hides
   Fit before, after;                // for the plots
   std::vector<Form> forms;          // owned here, since fits point to them
   Rules rules;

@@ -9,6 +9,7 @@ struct Rules {
   double window_materiality = 0.02;  // the same in an eighth of a record (short events)
   double detect = 18.0;              // fall of chi2 (over the overdispersion) that the best effect must bring
   double structure = 7.0;            // standard deviations of the residual's block sums that show that something is missing
+  double detect_p = 0.01;            // of the windowed maximum, by parametric bootstrap: above it nothing is named
   double accept_evidence = 10.0;     // fall of BIC against the baseline
   double explained = 0.70;           // share of the structure that a name must explain
   double held_out = 0.50;            // the same on protocols that were not fitted
@@ -19,6 +20,7 @@ struct Rules {
   double pair_material = 1.2;        // times the materiality (development half: less is the first effect's form error), or
   double pair_clean = 0.01;          // this share, if it also takes
   double pair_rest = 0.80;           // of what the smaller set leaves
+  double aside_tie = 3.0;            // the same for a rival that these trials could not show anyway
   double untestable_tie = 24.0;      // tie of a name whose deciding protocol was not run
   double form_preference = 4.0;      // of BIC, by which another form must beat the one of the catalogue
   double partial_structure = 6.0;    // standard deviations left, and

@@ -102,6 +102,43 @@ std::vector<Score> Screen::all(const std::vector<Form>& forms) const {
   return out;
 }
 
+std::vector<Eigen::VectorXd> Screen::repetition(Rng& rng) const {
+  std::vector<Eigen::VectorXd> y;
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    y.emplace_back(r_[i].size());
+    for (double& v : y[i]) v = rng.normal();
+    Eigen::Index k = 0;
+    if (fitter_.model().has_scale()) y[i] += N_[i].col(k++) * (fitter_.noise().scatter * rng.normal());
+    if (fitter_.model().has_gain()) y[i] += N_[i].col(k) * (fitter_.noise().gain_scatter * rng.normal());
+  }
+  return y;
+}
+
+void Screen::refit(std::vector<Eigen::VectorXd>& y) const {
+  std::vector<Eigen::VectorXd> n;
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(S_.rows());
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    n.push_back(N_[i].transpose() * y[i]);
+    g += G_[i].transpose() * y[i];
+    if (n[i].size() > 0) g -= C_[i] * (D_[i] * n[i]);
+  }
+  const Eigen::VectorXd x = S_.rows() > 0 ? Eigen::VectorXd(S_ * g) : g;
+  for (std::size_t i = 0; i < trials_.size(); ++i) {
+    if (x.size() > 0) y[i] -= G_[i] * x;
+    if (n[i].size() == 0) continue;
+    if (x.size() > 0) n[i] -= C_[i].transpose() * x;
+    y[i] -= N_[i] * (D_[i] * n[i]);
+  }
+}
+
+Screen::Direction Screen::direction(const Form& form, const std::vector<double>& start) const {
+  const Signature s = signature(form, start);
+  Direction out{s.s, std::max(0.0, inner(s, s)), !form.params.empty() && form.params[0].low < 0.0 && form.params[0].high > 0.0};
+  if (out.seen <= 1e-9 * s.norm) out.seen = 0.0;
+  refit(out.q);  // the projection is symmetric: P s
+  return out;
+}
+
 double Screen::correlation(const Form& a, const std::vector<double>& pa, const Form& b, const std::vector<double>& pb) const {
   const Signature x = signature(a, pa), y = signature(b, pb);
   const double xx = inner(x, x), yy = inner(y, y);

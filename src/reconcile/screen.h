@@ -3,6 +3,7 @@
 // effect is the change of the whitened residual when it is switched on at one of its starting points; its part orthogonal to the
 // present model (baseline, effects, records' own scales) is what the data can show of it (Rao 1948; Plumlee 2017).
 
+#include "base/rng.h"
 #include "reconcile/fit.h"
 
 namespace filum::reconcile {
@@ -22,6 +23,19 @@ class Screen {
   Score score(const Form& form, const std::vector<double>& start) const;
   /// Every form at every start that is not part of the fit, best first.
   std::vector<Score> all(const std::vector<Form>& forms) const;
+  /// What a repetition in which the fit is true would measure beyond it, whitened: white noise and the records' own scales.
+  std::vector<Eigen::VectorXd> repetition(Rng& rng) const;
+  /// In place: what a refit (made linear about the optimum) leaves of it.
+  void refit(std::vector<Eigen::VectorXd>& y) const;
+  /// q with which the score test of a form is (q.y)^2/seen.
+  struct Direction {
+    std::vector<Eigen::VectorXd> q;
+    double seen = 0.0;
+    bool either_sign = false;
+  };
+  Direction direction(const Form& form, const std::vector<double>& start) const;
+  const std::vector<Eigen::VectorXd>& residuals() const { return r_; }
+  const std::vector<int>& trials() const { return trials_; }
   /// Correlation of the orthogonal parts of two signatures.
   double correlation(const Form& a, const std::vector<double>& pa, const Form& b, const std::vector<double>& pb) const;
 

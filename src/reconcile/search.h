@@ -22,7 +22,8 @@ class Search {
   /// Best fit of each set of effects.
   const std::vector<Fit>& candidates() const { return candidates_; }
   double dispersion() const { return dispersion_; }
-  double bic(const Fit& f) const { return f.chi2 / dispersion_ + f.parameters * std::log(static_cast<double>(f.samples)); }
+  /// With lines of free phase in every record at what their phases cost (see search.cpp), not at log n an amplitude.
+  double bic(const Fit& f) const;
   /// Share of what is missing that a fit explains; `rest` is the structure left in the best fit of all.
   double explained(const Fit& f) const;
   /// The same set with one effect in another of its forms, where the data do not tell the two apart (within `tie` of BIC).
@@ -51,5 +52,8 @@ class Search {
   std::vector<Fit> candidates_;
   double dispersion_ = 1.0;
 };
+
+/// The baseline's residual against repetitions of the baseline.
+Detection detect(const Search& search, const std::vector<Form>& forms);
 
 }  // namespace filum::reconcile

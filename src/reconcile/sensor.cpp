@@ -75,6 +75,10 @@ void apply_saturation(const Setting& s, Eigen::MatrixXd& out) {
 
 void RigModel::simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
   rig(t, s, out);
+  sense(t, s, out);
+}
+
+void RigModel::sense(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
   apply_lag(t, s, out);
   if (has_gain()) out *= s.gain;
   apply_drift(t, s, session_start(), out);
@@ -88,6 +92,7 @@ Eigen::MatrixXd RigModel::free_columns(const Trial& t, const Setting& s) const {
     for (int i = 0; p != nullptr && i < n; ++i) lines.push_back(p[i]);
   };
   add(Effect::pulsation, s.form(Effect::pulsation) == 2 ? 2 : 1);
+  if (const double* p = s.on(Effect::pulsation); p != nullptr && s.form(Effect::pulsation) == 3) lines.push_back(2.0 * p[0]);
   add(Effect::mains_hum, 1);
   const int order = free_polynomial();
   const Eigen::Index n = t.time.size();
@@ -164,8 +169,10 @@ std::vector<Form> RigModel::sensor_forms() const {
         if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
     const double peak = std::max(std::abs(low), std::abs(high));
     if (low < 0) out.push_back({Effect::saturation, 3 * at, name + ": clipped on both sides", {{"limit", si, 0.2 * peak, 1.3 * peak, false}}, {{0.98 * peak}, {0.9 * peak}, {0.75 * peak}, {0.55 * peak}}, false});
-    if (high > 0) out.push_back({Effect::saturation, 3 * at + 1, name + ": clipped above", {{"limit", si, high - 0.9 * fs, high + 0.3 * fs, false}}, {{high - 0.02 * fs}, {high - 0.1 * fs}, {high - 0.25 * fs}, {high - 0.45 * fs}}, false});
-    if (low < -0.05 * fs) out.push_back({Effect::saturation, 3 * at + 2, name + ": clipped below", {{"limit", si, low - 0.3 * fs, low + 0.9 * fs, false}}, {{low + 0.02 * fs}, {low + 0.1 * fs}, {low + 0.25 * fs}, {low + 0.45 * fs}}, false});
+    // a limit of nothing is no limit of a sensor
+    const double above = low < 0 ? std::max(high - 0.9 * fs, 0.05 * fs) : high - 0.9 * fs, below = std::min(low + 0.9 * fs, -0.05 * fs);
+    if (high > 0.05 * fs) out.push_back({Effect::saturation, 3 * at + 1, name + ": clipped above", {{"limit", si, above, high + 0.3 * fs, false}}, {{high - 0.02 * fs}, {high - 0.1 * fs}, {high - 0.25 * fs}, {high - 0.45 * fs}}, false});
+    if (low < -0.06 * fs) out.push_back({Effect::saturation, 3 * at + 2, name + ": clipped below", {{"limit", si, low - 0.3 * fs, below, false}}, {{low + 0.02 * fs}, {low + 0.1 * fs}, {low + 0.25 * fs}, {low + 0.45 * fs}}, false});
   }
   if (clocked) out.push_back({Effect::mains_hum, 0, "line near 50 or 60 Hz, free phase in every record", {{"frequency", "Hz", 49.0, 61.0, false}}, {}, true});
   return out;

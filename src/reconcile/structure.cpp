@@ -47,16 +47,36 @@ double variogram(const std::vector<Eigen::VectorXd>& records, int lag) {
 
 }  // namespace
 
+namespace {
+
+/// Residuals of replicates less each other, over sqrt 2: what they have in common, the model's misfit, cancels.
+std::vector<Eigen::VectorXd> replicate_differences(const Dataset& d, const Fit& fit, std::size_t output) {
+  std::map<std::string, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < d.trials.size(); ++i)
+    if (!d.trials[i].repeat.empty() && i < fit.residual.size() && !fit.residual[i].empty()) groups[d.trials[i].repeat + d.protocol_text(d.trials[i])].push_back(i);
+  std::vector<Eigen::VectorXd> out;
+  for (const auto& [key, members] : groups)
+    for (std::size_t k = 1; k < members.size(); ++k) {
+      const Eigen::VectorXd &a = fit.residual[members[k]][output], &b = fit.residual[members[k - 1]][output];
+      const Eigen::Index n = std::min(a.size(), b.size());
+      if (n > 20 && 50 * std::abs(a.size() - b.size()) <= n) out.push_back((a.head(n) - b.head(n)) / std::numbers::sqrt2);
+    }
+  return out;
+}
+
+}  // namespace
+
 Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
   Noise noise = fitter.noise();
   const Dataset& d = fitter.model().data();
   for (std::size_t c = 0; c < d.outputs.size(); ++c) {
-    std::vector<Eigen::VectorXd> records;
+    std::vector<Eigen::VectorXd> records = replicate_differences(d, fit, c);
+    const bool replicates = !records.empty();
     double sum = 0.0;
     int n = 0;
     for (const auto& r : fit.residual) {
       if (r.empty()) continue;
-      records.push_back(r[c]);
+      if (!replicates) records.push_back(r[c]);
       for (const double v : r[c])
         if (std::isfinite(v)) sum += v * v, ++n;
     }
@@ -72,7 +92,7 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
       // a variogram that keeps rising says the same more carefully; a slow misfit cannot lift it beyond the stated noise
       continue;
     }
-    o.from = "fast part";
+    o.from = replicates ? "replicates" : "fast part";
     const double r2 = v1 > 0 ? v2 / v1 - 1.0 : 0.0, r4 = v2 > 0 ? std::sqrt(std::max(0.0, v4 / v2 - 1.0)) : 0.0;
     o.rho = std::clamp(0.5 * (r2 + r4) < 0.08 ? 0.0 : 0.5 * (r2 + r4), 0.0, 0.97);
     o.sigma = std::max(std::sqrt(0.5 * v1 / (1.0 - o.rho)), floor);
@@ -118,6 +138,23 @@ double replicate_dispersion(const Fitter& fitter, const Fit& fit, int length) {
     }
   if (difference.empty()) return 1.0;
   return structure_of(difference, static_cast<int>(difference.size()), length).dispersion;
+}
+
+Window strongest_window(const std::vector<Eigen::VectorXd>& white) {
+  Window best;
+  Eigen::VectorXd sum;
+  for (std::size_t i = 0; i < white.size(); ++i) {
+    const Eigen::Index n = white[i].size();
+    sum.resize(n + 1);
+    sum[0] = 0.0;
+    for (Eigen::Index k = 0; k < n; ++k) sum[k + 1] = sum[k] + white[i][k];
+    for (Eigen::Index L = 4; L <= n; L *= 2)
+      for (Eigen::Index k = 0; k + L <= n; k += L / 4) {
+        const double value = std::abs(sum[k + L] - sum[k]) / std::sqrt(static_cast<double>(L));
+        if (value > best.value) best = {value, i, k, L};
+      }
+  }
+  return best;
 }
 
 Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double high) {

@@ -23,6 +23,15 @@ double replicate_scatter(const Dataset& d, const Fit& loose);
 /// Overdispersion that replicates show among each other (their common misfit cancels), at least 1.
 double replicate_dispersion(const Fitter& fitter, const Fit& fit, int length = 0);
 
+/// The largest |sum of a window| / sqrt(length) of whitened residuals, windows of 4, 8, 16 ... samples in steps of a quarter: slow misfit
+/// and short events alike.
+struct Window {
+  double value = 0.0;
+  std::size_t trial = 0;
+  Eigen::Index from = 0, length = 0;  // [samples]
+};
+Window strongest_window(const std::vector<Eigen::VectorXd>& white);
+
 struct Line {
   double frequency = 0.0;  // [Hz]
   double gain = 0.0;       // fall of chi2, against the local background

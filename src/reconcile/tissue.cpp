@@ -3,7 +3,7 @@
 //   linear      F = E K e (shear: E/(2(1+nu)) K e), K = A (contract: small-strain stiffness E A / h)
 //   Ogden       P = 2E/(3 alpha) (l^(alpha-1) - l^(-alpha/2-1))                 (Ogden 1972; Budday et al. 2017)
 //   stiffening  P = 2 (l - l^-2)(c10 + 2 c20 (I1-3)), c10 = E/6                 (Yeoh 1993); also E e exp(2 r (I1-3)) (Demiray 1972)
-//   softening   factor 1 - d (1 - exp(-(Wmax - W)/W0)); also erf (Ogden & Roxburgh 1999)
+//   softening   factor 1 - d (1 - exp(-(Wmax - W)/W0)); also erf (Ogden & Roxburgh 1999) and x/(1 + x), x = (Wmax - W)/W0
 //   platen      1 + mu S/3, (e^(mu S) - 1)/(mu S), 1 + mu S^2, S = width/height
 // The blade: e = depth/height, K = E* stiffness of a rectangular punch on a bonded layer, F = depth (2 sqrt(A/pi) + A/h)/(1-nu^2) E.
 // Valid: quasi-static, uniform strain. The blade's factor is an estimate: its error is a free scale of each blade size.
@@ -100,6 +100,10 @@ class Tissue final : public RigModel {
   std::vector<double> guess() const override;
   std::vector<Form> forms() const override;
   void rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const override;
+  double punch_stiffness(const Trial& t, double nu) const override {
+    const Geometry g = geometry_of(data(), t);
+    return g.factor / g.height / (1.0 - nu * nu);
+  }
 
  private:
   double modulus(const Geometry& g, const Setting& s) const;
@@ -163,7 +167,7 @@ void Tissue::elastic_history(const Trial& t, const Geometry& g, const Setting& s
       double stress = elastic(e, g, s);
       if (soft != nullptr) {
         const double w = 0.5 * e * e, deficit = std::max(top - w, 0.0) / soft[1];
-        stress *= 1.0 - soft[0] * (s.form(Effect::first_cycle_softening) == 0 ? -std::expm1(-deficit) : std::erf(deficit));
+        stress *= 1.0 - soft[0] * softening_share(deficit, s.form(Effect::first_cycle_softening));
       }
       return stiff * stress;
     };
@@ -296,6 +300,7 @@ std::vector<Form> Tissue::forms() const {
   const ParamSpec W0{"W0", "Pa", 0.01 * w, 5.0 * w, true, 0};
   f.push_back({Effect::first_cycle_softening, 0, "exponential in the energy", {{"d", "-", 0.005, 0.9, false}, W0}, grid({{0.2}, {0.1 * w, 0.5 * w}}), false});
   f.push_back({Effect::first_cycle_softening, 1, "error function of the energy", {{"d", "-", 0.005, 0.9, false}, W0}, grid({{0.2}, {0.3 * w}}), false});
+  f.push_back({Effect::first_cycle_softening, 2, "x/(1 + x) of the energy", {{"d", "-", 0.005, 0.9, false}, W0}, grid({{0.3}, {0.2 * w}}), false});
   f.push_back({Effect::permanent_set, 0, "fraction of the largest past strain", {{"fraction", "-", 0.002, 0.6, false}}, {{0.05}}, false});
   f.push_back({Effect::permanent_set, 1, "grows with the square of the largest past strain", {{"fraction", "-", 0.002, 0.6, false}}, {{0.05}}, false});
   const auto drain = [&](int kind, const char* text, double D, double x = 1.0) {
@@ -322,6 +327,8 @@ std::vector<Form> Tissue::forms() const {
   const ParamSpec heart{"frequency", "Hz", 0.7, 2.2, false}, breath{"frequency", "Hz", 0.12, 0.45, false};
   f.push_back({Effect::pulsation, 0, "heart", {heart}, {}, true});
   f.push_back({Effect::pulsation, 1, "breath", {breath}, {}, true});
+  f.push_back({Effect::pulsation, 2, "heart and breath", {heart, {"breath_frequency", "Hz", 0.12, 0.45, false}}, {}, true});
+  f.push_back({Effect::pulsation, 3, "heart and its first harmonic", {heart}, {}, true});
   std::erase_if(f, [&](const Form& form) { return std::find(own.begin(), own.end(), form.effect) == own.end(); });
   return f;
 }

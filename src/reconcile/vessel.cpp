@@ -4,7 +4,7 @@
 // r'^2 = R^2 + 2 C (which agrees with u = C/r to first order), P = int (s_theta - s_r) dr'/r':
 //   fibres      W = k1/(2 k2)(exp(k2 E^2)-1), E = cos^2(b)(l^2-1)/2 + sin^2(b)(lz^2-1)/2, in tension (Holzapfel, Gasser & Ogden 2000)
 //   stiffening  4 c20 (I1-3)(l^2 - l^-2), c10 = E/6                (Yeoh 1993)
-//   tone        s_act (1 - ((lm-l)/(lm-1))^2), or constant         (Rachev & Hayashi 1999)
+//   tone        s_act (1 - ((lm-l)/(lm-1))^2), or a bell that vanishes at l = 1   (Rachev & Hayashi 1999)
 //   tethering   pressure k u(b) from outside                        residual stress: neo-Hookean sector (Chuong & Fung 1986)
 // Valid: thick or thin wall, quasi-static. Memory acts on the pressure that the wall's motion asks for.
 
@@ -107,7 +107,9 @@ double Vessel::extra(double C, double lz, const Wall& w, const Setting& s) const
       }
       if (tone != nullptr) {
         const double x = (tone[1] - l) / (tone[1] - 1.0);
-        stress += tone[0] * (s.form(Effect::smooth_muscle_tone) == 0 ? std::max(0.0, 1.0 - x * x) : std::exp(-std::pow((l - tone[1]) / 0.15, 2)));
+        // the diameter without pressure is the one measured: tone has no part in it
+        stress += tone[0] * (s.form(Effect::smooth_muscle_tone) == 0 ? std::max(0.0, 1.0 - x * x)
+                                                                     : std::max(0.0, std::exp(-std::pow((l - tone[1]) / 0.15, 2)) - std::exp(-std::pow((1.0 - tone[1]) / 0.15, 2))));
       }
       P += kWeight[i] * (ro - ri) * stress / r;
     }
@@ -180,7 +182,7 @@ void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
       if (soft != nullptr) {  // energy over the modulus, of the state of the step before
         const double e = C / (w.a * w.b), energy = 0.5 * e * e;
         top = std::max(top, energy);
-        softened = 1.0 - soft[0] * -std::expm1(-(top - energy) / soft[1]);
+        softened = 1.0 - soft[0] * softening_share((top - energy) / soft[1], s.form(Effect::first_cycle_softening));
       }
       C = steady ? solve(P[n], C, softened, w, table) : solve(P[n], C, softened, w, [&](double c) { return extra(c, lz, w, s); });
     }
@@ -226,8 +228,8 @@ std::vector<Form> Vessel::forms() const {
     f.push_back({Effect::strain_stiffening, k, k == 0 ? "Yeoh" : "exponential", {{"c20_over_c10", "-", 1e-3 * r0, 300 * r0, true}}, {{r0}, {6 * r0}}, false});
   f.push_back({Effect::smooth_muscle_tone, 0, "parabola of the stretch", {{"active_stress", "Pa", 1e-3 * stress, 5 * stress, true}, {"stretch_of_most_tone", "-", 1.02, 1.8, false}},
                grid({{0.2 * stress}, {1.1, 1.3}}), false});
-  f.push_back({Effect::smooth_muscle_tone, 1, "bell of the stretch", {{"active_stress", "Pa", 1e-3 * stress, 5 * stress, true}, {"stretch_of_most_tone", "-", 0.95, 1.8, false}},
-               grid({{0.2 * stress}, {1.05, 1.25}}), false});
+  f.push_back({Effect::smooth_muscle_tone, 1, "bell of the stretch", {{"active_stress", "Pa", 1e-3 * stress, 5 * stress, true}, {"stretch_of_most_tone", "-", 1.02, 1.8, false}},
+               grid({{0.2 * stress}, {1.1, 1.25}}), false});
   f.push_back({Effect::residual_stress, 0, "neo-Hookean sector", {{"opening_angle", "rad", 2 * deg, 300 * deg, false}}, {{60 * deg}, {150 * deg}}, false});
   const double k = largest_ / (strain_ * b_);
   f.push_back({Effect::perivascular_tethering, 0, "elastic foundation", {{"foundation_stiffness", "Pa/m", 1e-3 * k, 3 * k, true}}, {{0.2 * k}}, false});
@@ -238,7 +240,9 @@ std::vector<Form> Vessel::forms() const {
   f.push_back({visco, 1, "two exponentials", {{"g1", "-", 0.005, 0.6, false}, tau, {"g2", "-", 0.005, 0.39, false}, {"tau2", "s", tiny, 10 * T, true}},
                grid({{0.2}, {0.02 * T}, {0.2}, {0.2 * T}}), false});
   const double W = 0.5 * inner * inner;
-  f.push_back({Effect::first_cycle_softening, 0, "exponential in the energy", {{"d", "-", 0.005, 0.9, false}, {"W0", "Pa", 0.01 * W, 5 * W, true, 0}}, grid({{0.2}, {0.1 * W, 0.5 * W}}), false});
+  const char* softenings[] = {"exponential in the energy", "error function of the energy", "x/(1 + x) of the energy"};
+  for (int kind = 0; kind < 3; ++kind)
+    f.push_back({Effect::first_cycle_softening, kind, softenings[kind], {{"d", "-", 0.005, 0.9, false}, {"W0", "Pa", 0.01 * W, 5 * W, true, 0}}, grid({{0.2}, {0.1 * W, 0.5 * W}}), false});
   return f;
 }
 

@@ -91,7 +91,8 @@ TEST(Dataset, RefusesWithFileLineColumnAndExpectation) {
       {"unknown parameter", with(block_yaml(kOne), "[youngs_modulus]", "[stiffness]"), good, "model.free"},
       {"prior without unit", block_yaml(kOne, "  prior: { youngs_modulus: [500, 5000] }\n"), good, "model.prior.youngs_modulus[0]"},
       {"no specimen", with(block_yaml(kOne), ", height: \"5 mm\"", ""), good, "specimen.height"},
-      {"video", with(block_yaml(kOne), "a.csv", "a.mp4"), good, "a .csv file"},
+      {"video", with(block_yaml(kOne), "a.csv", "a.mp4"), good, "a map with scale (length of a pixel) and points"},
+      {"picture", with(block_yaml(kOne), "a.csv", "a.png"), good, "a .csv file or a video"},
       {"path outside", with(block_yaml(kOne), "a.csv", "../a.csv"), good, "inside the dataset's folder"},
       {"model unknown", with(block_yaml(kOne), "brain/linear", "brain/none"), good, "model.file"},
       {"all held out", with(block_yaml(kOne), " } }\n", " }, hold_out: true }\n"), good, "at least one trial that is not held out"}};

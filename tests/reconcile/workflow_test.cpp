@@ -49,6 +49,10 @@ TEST(Workflow, NamesRelaxationWithItsParameters) {
   EXPECT_GT(r.fit.before, 2.0);
   EXPECT_NEAR(r.fit.after, 1.0, 0.1);
   EXPECT_NEAR(r.baseline[0].value, 1000.0, 50.0);
+  ASSERT_TRUE(r.detection.has_value());
+  EXPECT_LT(r.detection->p, 0.006);  // 2/401: no repetition of the baseline reaches it
+  EXPECT_EQ(r.noise.output[0].from, "replicates");
+  EXPECT_NEAR(r.noise.output[0].sigma, 0.03e-3, 0.003e-3);
 }
 
 TEST(Workflow, NamesNothingWhereNothingIsMissing) {
@@ -58,6 +62,7 @@ TEST(Workflow, NamesNothingWhereNothingIsMissing) {
     const Result r = solve(f);
     EXPECT_EQ(r.verdict, "agree") << r.sentence;
     EXPECT_TRUE(r.effects.empty());
+    EXPECT_GT(r.detection->p, 0.01);
   }
 }
 

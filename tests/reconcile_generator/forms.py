@@ -2,6 +2,7 @@
 steps (each record is computed on a grid ten times finer than it is sampled)."""
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 from scipy.ndimage import uniform_filter1d
 
 FINE = 10
@@ -79,9 +80,11 @@ def soft_clip(y, limit):
     return np.sign(y) * limit * x / (1 + x ** 24) ** (1 / 24)
 
 
-def beat(t, rng, f, amplitude, harmonic=0.15):
+def beat(t, rng, f, amplitude, breath=0.0, harmonic=0.15):
+    """Heart with its first harmonic and, as a share of it, breath at about a quarter of the rate; all phases random."""
     phase = 2 * np.pi * f * t + rng.uniform(0, 2 * np.pi)
-    return amplitude * (np.sin(phase) + harmonic * np.sin(2 * phase + rng.uniform(0, 6.28)))
+    slow = breath * np.sin(2 * np.pi * (0.17 + 0.06 * f) * t + rng.uniform(0, 6.28))
+    return amplitude * (np.sin(phase) + harmonic * np.sin(2 * phase + rng.uniform(0, 6.28)) + slow)
 
 
 def softening(e, d, w0):
@@ -112,6 +115,19 @@ def elastica(L, B, w, kappa0, rest=None):
         a, fa = b, fb
         b, fb = c, end(c)
     return fb[2], fb[1]
+
+
+def opened_sector(a, b, mu, angle):
+    """Pressure a neo-Hookean tube closed from a sector of this opening angle bears beyond that of one without: trapezoidal rule over 400
+    points of the wall, the open radius by bisection on the unloaded tube. Returns a function of C, r'^2 = r^2 + 2 C."""
+    k = 1 / (1 - angle / (2 * np.pi))
+
+    def pressure(factor, open_inner, C):
+        r = np.sqrt(np.linspace(a * a, b * b, 400) + 2 * C)
+        stretch = r * factor / np.sqrt(open_inner ** 2 + factor * (r ** 2 - r[0] ** 2))
+        return np.trapz(mu * (stretch ** 2 - stretch ** -2) / r, r)
+    inner = brentq(lambda R: pressure(k, R, 0.0), 0.3 * a, 8 * a * k)
+    return lambda C: pressure(k, inner, C) - pressure(1.0, a, C)
 
 
 def smooth(y, n):

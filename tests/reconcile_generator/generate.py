@@ -14,7 +14,7 @@ from mechanical import Cantilever, Spatula, Tissue, Vessel
 RIGS = [Tissue, Spatula, Vessel, Cantilever, Capstan, Needle, Forceps, Hold]
 KINDS = ['null'] * 3 + ['wrong-parameter'] * 1 + ['single'] * 9 + ['double'] * 3 + ['outside'] * 3 + ['unidentifiable'] * 1
 UNITS = {'displacement': ('mm', 1e3), 'depth': ('mm', 1e3), 'force': ('mN', 1e3), 'pull_force': ('mN', 1e3), 'hold_force': ('mN', 1e3), 'pressure': ('kPa', 1e-3),
-         'outer_diameter': ('um', 1e6), 'overhang': ('mm', 1e3), 'tip_drop': ('mm', 1e3), 'speed': ('mm/s', 1e3), 'wrap_angle': ('deg', 180 / np.pi), 'angle': ('deg', 180 / np.pi),
+         'outer_diameter': ('um', 1e6), 'overhang': ('mm', 1e3), 'tip_drop': ('mm', 1e3), 'tip_reach': ('mm', 1e3), 'speed': ('mm/s', 1e3), 'wrap_angle': ('deg', 180 / np.pi), 'angle': ('deg', 180 / np.pi),
          'grip_force': ('N', 1.0), 'temperature': ('degC', 1.0), 'strain_counts': ('count', 1.0), 'pressure_counts': ('count', 1.0), 'x': ('um', 1e6), 'y': ('um', 1e6), 'z': ('um', 1e6)}
 
 
@@ -26,7 +26,8 @@ def sensor(rig, t, y, fx, top):
         v, x = fx['sensor-drift'], t / rig.span
         y = y + v['size'] * (np.log1p(30 * x) / np.log(31) if v['log'] else x)
     if 'saturation' in fx:
-        y = np.clip(y, -fx['saturation']['share'] * top, fx['saturation']['share'] * top)
+        rest = y[0] if rig.rig == 'vessel-inflation' else 0.0  # a diameter is clipped above what it is at rest
+        y = np.clip(y - rest, -fx['saturation']['share'] * (top - rest), fx['saturation']['share'] * (top - rest)) + rest
     if 'mains-hum' in fx:
         v = fx['mains-hum']
         y = y + v['amplitude'] * np.sin(2 * np.pi * v['frequency'] * t + rig.rng.uniform(0, 6.28))

@@ -61,7 +61,7 @@ class Capstan:
 
 class Needle:
     rig, model, free, output = 'needle-insertion', 'needle/linear', ['stiffness', 'puncture_force'], 'force'
-    effects = ['layer-rupture', 'shaft-friction', 'viscous-drag', 'sensor-lag', 'sensor-drift', 'saturation', 'mains-hum']
+    effects = ['layer-rupture', 'shaft-friction', 'viscous-drag', 'sensor-lag', 'sensor-drift', 'saturation', 'mains-hum']  # a load train in series is a softer needle tissue: not testable
     outside = ['offset-step', 'square-drag']
 
     def __init__(self, rng, effects):
@@ -231,7 +231,7 @@ class Hold:
                     rec[i] = s
                 y = y + rec / rec.std() * v['rms']
             if 'pulsation' in fx:
-                y = y + F.beat(t, self.rng, fx['pulsation']['frequency'], fx['pulsation']['amplitude'])
+                y = y + F.beat(t, self.rng, fx['pulsation']['frequency'], fx['pulsation']['amplitude'], fx['pulsation']['breath'])
             if 'slow-tremor' in fx:
                 v = fx['slow-tremor']
                 rec = np.convolve(self.rng.standard_normal(len(t) + 400), np.sin(2 * np.pi * 4 * np.arange(400) / self.rate) * np.exp(-np.arange(400) / self.rate * 4), 'valid')[:len(t)]
@@ -248,7 +248,7 @@ class Hold:
         q = self.sigma * (0.8 + 3 * s)
         return {
             'physiological-tremor': lambda: {'frequency': r.uniform(8.3, 11.5), 'rms': q, 'width': r.uniform(0.15, 0.5)},
-            'pulsation': lambda: {'frequency': r.uniform(0.85, 1.9), 'amplitude': q},
+            'pulsation': lambda: {'frequency': r.uniform(0.85, 1.9), 'amplitude': q, 'breath': r.choice([0.0, 0.0, 0.6])},
             'mains-hum': lambda: {'frequency': r.choice([50.0, 60.0]) + r.uniform(-0.05, 0.05), 'amplitude': q},
             'slow-tremor': lambda: {'rms': q},
             'offset-step': lambda: {'size': 6 * q, 'at': r.uniform(0.3, 0.7)},

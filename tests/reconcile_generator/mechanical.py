@@ -122,7 +122,7 @@ class Tissue:
                 pull, reach = fx['contact-adhesion']['pull_off'], fx['contact-adhesion']['reach'] * abs(e_peak) * h
                 f = np.where(gap & (t > 0.5 * T), pull * area * np.clip(np.minimum(u / (0.1 * reach), (reach - u) / (0.9 * reach)), 0, 1), f)
         if 'pulsation' in fx:
-            f = f + F.beat(t, self.rng, fx['pulsation']['frequency'], fx['pulsation']['amplitude'])
+            f = f + F.beat(t, self.rng, fx['pulsation']['frequency'], fx['pulsation']['amplitude'], fx['pulsation']['breath'])
         return t, {'displacement': u}, {'force': f}, {'mode': mode, 'rate': ('%.5g mm/s' % (1e3 * self.rate * speed * h))}, ({'height': h} if size != 1 else {})
 
     def draw(self, name, s):
@@ -140,7 +140,7 @@ class Tissue:
             'contact-adhesion': lambda: {'pull_off': self.E * self.peak * (0.05 + 0.2 * s), 'reach': r.uniform(0.08, 0.2)},
             'platen-friction': lambda: {'friction_coefficient': 0.15 + 0.5 * s},
             'rig-compliance': lambda: {'compliance': (0.1 + 0.5 * s) * self.h / (self.E * self.w ** 2)},
-            'pulsation': lambda: {'frequency': r.uniform(0.85, 1.9), 'amplitude': F0 * (0.02 + 0.06 * s)},
+            'pulsation': lambda: {'frequency': r.uniform(0.85, 1.9), 'amplitude': F0 * (0.02 + 0.06 * s), 'breath': r.choice([0.0, 0.0, 0.6])},
             'hysteresis': lambda: {'width': self.h * self.peak * (0.04 + 0.12 * s)},
             'sensor-lag': lambda: {'time_constant': T * (0.002 + 0.006 * s), 'poles': int(r.integers(1, 3)), 'delay': r.random() < 0.3},
             'sensor-drift': lambda: {'size': F0 * (0.06 + 0.15 * s), 'log': r.random() < 0.4},
@@ -156,12 +156,12 @@ class Tissue:
 
 class Spatula(Tissue):
     rig, output = 'spatula-press', 'force'
-    effects = ['viscoelastic-relaxation', 'strain-stiffening', 'first-cycle-softening', 'permanent-set', 'poroelastic-drainage', 'pulsation',
+    effects = ['viscoelastic-relaxation', 'strain-stiffening', 'first-cycle-softening', 'permanent-set', 'poroelastic-drainage', 'contact-adhesion', 'pulsation',
                'sensor-lag', 'sensor-drift', 'saturation', 'mains-hum']
 
     def __init__(self, rng, effects):
         super().__init__(rng, effects)
-        self.free, self.shear, self.liftoff = ['youngs_modulus'], False, False
+        self.free, self.shear, self.liftoff = ['youngs_modulus'], False, 'contact-adhesion' in effects
         self.round = False
         self.H = rng.uniform(15e-3, 30e-3)
         self.h = self.H
@@ -195,14 +195,14 @@ class Spatula(Tissue):
 
 class Vessel:
     rig, model, free, output = 'vessel-inflation', 'vessel/linear', ['youngs_modulus'], 'outer_diameter'
-    effects = ['viscoelastic-relaxation', 'strain-stiffening', 'first-cycle-softening', 'fibre-stiffening', 'smooth-muscle-tone', 'sensor-lag',
-               'sensor-drift', 'saturation', 'mains-hum']
+    effects = ['viscoelastic-relaxation', 'strain-stiffening', 'first-cycle-softening', 'fibre-stiffening', 'smooth-muscle-tone', 'residual-stress',
+               'perivascular-tethering', 'sensor-lag', 'sensor-drift', 'saturation', 'mains-hum']
     outside = ['offset-step', 'damage', 'collapse']
 
     def __init__(self, rng, effects):
         self.rng = rng
         self.D = np.exp(rng.uniform(np.log(0.8e-3), np.log(4e-3)))
-        self.wall = self.D * rng.uniform(0.08, 0.2)
+        self.wall = self.D * (rng.uniform(0.2, 0.3) if 'residual-stress' in effects else rng.uniform(0.08, 0.2))
         self.P = rng.uniform(8e3, 20e3)
         b, a = self.D / 2, self.D / 2 - self.wall
         self.E = 3 * self.P / (2 * (1 / a ** 2 - 1 / b ** 2)) / (b * b * rng.uniform(0.06, 0.16))
@@ -238,8 +238,15 @@ class Vessel:
                 s += v['active_stress'] * np.maximum(0, 1 - ((l - v['peak']) / (v['peak'] - 1)) ** 2) ** 1.0
             return np.trapz(s * R / (R ** 2 + 2 * C), R)
         lame = 1 / a ** 2 - 1 / b ** 2
+        if 'residual-stress' in fx:
+            bent = F.opened_sector(a, b, mu, fx['residual-stress']['opening_angle'])
         grid = np.linspace(0, 0.8 * b * b, 400)
         table = np.array([2 * mu * C * lame + extra(C) for C in grid])
+        if 'residual-stress' in fx:
+            table = table + np.array([bent(C) for C in grid])
+        if 'perivascular-tethering' in fx:
+            u = np.sqrt(b * b + 2 * grid) - b
+            table = table + fx['perivascular-tethering']['foundation_stiffness'] * u
         Pe = P.copy()
         if 'viscoelastic-relaxation' in fx:
             v = fx['viscoelastic-relaxation']
@@ -279,6 +286,8 @@ class Vessel:
             'first-cycle-softening': lambda: {'d': 0.08 + 0.3 * s, 'w0': 0.5 * e * e * r.uniform(0.15, 0.5)},
             'fibre-stiffening': lambda: {'k1': sig * (0.3 + 0.8 * s) / e * 0.3, 'k2': r.uniform(1, 4) / e ** 2 * 0.3},
             'smooth-muscle-tone': lambda: {'active_stress': sig * (0.1 + 0.3 * s), 'peak': 1 + e * r.uniform(0.4, 0.7)},
+            'residual-stress': lambda: {'opening_angle': np.radians(40 + 140 * s)},
+            'perivascular-tethering': lambda: {'foundation_stiffness': self.P / (0.5 * rise) * (0.1 + 0.5 * s)},
             'sensor-lag': lambda: {'time_constant': self.T * (0.003 + 0.008 * s), 'poles': int(r.integers(1, 3)), 'delay': r.random() < 0.3},
             'sensor-drift': lambda: {'size': rise * (0.06 + 0.15 * s), 'log': r.random() < 0.4},
             'saturation': lambda: {'share': 0.85 - 0.3 * s},
@@ -291,7 +300,7 @@ class Vessel:
 
 class Cantilever:
     rig, model, free, output = 'suture-cantilever', 'suture/elastic', ['youngs_modulus'], 'tip_drop'
-    effects = ['rest-curvature', 'bending-creep', 'sensor-drift', 'saturation']
+    effects = ['rest-curvature', 'bending-creep', 'permanent-set', 'sensor-drift', 'saturation']
     outside = ['offset-step', 'kink']
 
     def __init__(self, rng, effects):
@@ -301,19 +310,24 @@ class Cantilever:
         self.rho = 1140.0
         self.L = (self.E * self.d ** 2 / (16 * self.rho * 9.81) * rng.uniform(1.5, 8)) ** (1 / 3)
         self.n = int(rng.integers(25, 45))
+        self.back = 'permanent-set' in effects or rng.random() < 0.3
+        self.with_reach = rng.random() < 0.3
 
     def specimen(self):
         return {'diameter': self.d, 'density': self.rho}
 
     def protocols(self):
-        return [('down', 'steps'), ('up', 'steps'), ('down', 'rest'), ('up', 'rest')]
+        there = 'and back' if self.back else 'steps'
+        return [('down', there), ('up', there), ('down', 'rest'), ('up', 'rest')]
 
     def trial(self, p, fx, scale):
         side, kind = p
         n = self.n
         T = 600.0
         t = np.linspace(0, T, n * 4)
-        L = np.linspace(0.35, 1.0, len(t)) * self.L if kind == 'steps' else np.full(len(t), 0.85 * self.L)
+        up = np.linspace(0.35, 1.0, len(t))
+        L = {'steps': up, 'and back': np.interp(t / T, [0, 0.5, 1], [0.35, 1.0, 0.35]), 'rest': np.full(len(t), 0.85)}[kind] * self.L
+        kind = 'steps' if kind == 'and back' else kind
         B = self.E * scale * np.pi * self.d ** 4 / 64
         w = self.rho * 9.81 * np.pi / 4 * self.d ** 2
         k0 = fx.get('rest-curvature', {}).get('curvature', 0.0) * (1 if side == 'down' else -1)
@@ -321,15 +335,22 @@ class Cantilever:
         if 'bending-creep' in fx:
             v = fx['bending-creep']
             J = 1 + v['a'] * np.log(1 + t / v['t0'])
-        idx = np.unique(np.linspace(0, len(t) - 1, 14).astype(int))
-        drop = np.array([F.elastica(L[i], B / J[i], w, k0)[0] / L[i] for i in idx])
+        idx = np.unique(np.linspace(0, len(t) - 1, 15).astype(int))
+        shape = np.empty((len(idx), 2))
+        most = 0.0
+        for k, i in enumerate(idx):
+            own = fx['permanent-set']['fraction'] * most if 'permanent-set' in fx else 0.0  # one curvature for the whole length
+            shape[k] = np.array(F.elastica(L[i], B / J[i], w, k0 + own)) / L[i]
+            most = max(most, w * L[i] ** 2 / (2 * B / J[i]) * np.sqrt(max(0.0, 1 - shape[k, 0] ** 2)))
         from scipy.interpolate import PchipInterpolator
-        y = L * (PchipInterpolator(t[idx], drop)(t) if kind == 'steps' or 'bending-creep' in fx else drop[0])
+        curve = PchipInterpolator(t[idx], shape)(t) if kind == 'steps' or 'bending-creep' in fx or 'permanent-set' in fx else np.repeat(shape[:1], len(t), 0)
+        y = L * curve[:, 0]
         if 'kink' in fx and kind == 'steps':
             y = y + fx['kink']['size'] * self.L * np.maximum(0, L / self.L - 0.7)
         if 'offset-step' in fx:
             y = y + fx['offset-step']['size'] * self.L * 0.5 * ((t > 0.3 * T) & (t < 0.6 * T))
-        return t, {'overhang': L}, {'tip_drop': y}, {'orientation': side}, {}
+        out = {'tip_drop': y, 'tip_reach': L * curve[:, 1]} if self.with_reach else {'tip_drop': y}
+        return t, {'overhang': L}, out, {'orientation': side}, {}
 
     fine = 4
 
@@ -338,6 +359,7 @@ class Cantilever:
         return {
             'rest-curvature': lambda: {'curvature': (0.15 + 0.5 * s) / self.L},
             'bending-creep': lambda: {'a': 0.04 + 0.12 * s, 't0': r.uniform(5, 60)},
+            'permanent-set': lambda: {'fraction': 0.08 + 0.3 * s},
             'sensor-drift': lambda: {'size': self.L * 0.5 * (0.06 + 0.15 * s), 'log': r.random() < 0.3},
             'saturation': lambda: {'share': 0.85 - 0.3 * s},
             'offset-step': lambda: {'size': 0.06 + 0.15 * s},

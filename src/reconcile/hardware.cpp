@@ -1,0 +1,79 @@
+#include "reconcile/hardware.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "reconcile/model.h"
+
+namespace filum::reconcile {
+namespace {
+
+template <class... A>
+std::string text(const char* format, A... values) {
+  char out[200];
+  std::snprintf(out, sizeof out, format, values...);
+  return out;
+}
+
+void check_clock(const Trial& t, std::vector<HardwareCheck>& out) {
+  if (!t.clocked || t.samples() < 8) return;
+  std::vector<double> steps;
+  Eigen::Index longest = 1;
+  for (Eigen::Index n = 1; n < t.time.size(); ++n) {
+    steps.push_back(t.time[n] - t.time[n - 1]);
+    if (steps.back() > t.time[longest] - t.time[longest - 1]) longest = n;
+  }
+  const double usual = median(steps), most = t.time[longest] - t.time[longest - 1];
+  if (most > 5.0 * usual) out.push_back({"gap", t.file, text("no sample for %.3g s from %.4g s on, where %.3g s are usual", most, t.time[longest - 1], usual)});
+  std::vector<double> away;
+  for (const double s : steps) away.push_back(std::abs(s - usual));
+  const double jitter = 1.48 * median(away) / usual;
+  if (jitter > 0.02) out.push_back({"clock", t.file, text("steps of the clock vary by %.2g %% of their %.3g s", 100.0 * jitter, usual)});
+}
+
+void check_values(const Trial& t, const Channel& c, std::vector<HardwareCheck>& out) {
+  std::vector<double> values, sorted;
+  for (const double v : t.at(c.name))
+    if (std::isfinite(v)) values.push_back(v);
+  if (values.size() < 20) return;
+  sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  const double range = sorted.back() - sorted.front();
+  if (range <= 0.0) return;
+  // the step of a converter: the least distance of neighbours, if all distances are multiples of it
+  std::vector<double> gaps;
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i] - sorted[i - 1] > 1e-9 * range) gaps.push_back(sorted[i] - sorted[i - 1]);
+  const double step = *std::min_element(gaps.begin(), gaps.end());
+  const auto whole = std::count_if(gaps.begin(), gaps.end(), [&](double g) { return std::abs(g / step - std::round(g / step)) < 0.05; });
+  const std::string where = t.file + " " + c.name;
+  if (step > 2e-5 * range && static_cast<std::size_t>(whole) > gaps.size() * 95 / 100)
+    out.push_back({"quantisation", where, text("values in steps of %.3g %s: %.1f bits over what was measured", step / c.scale, c.unit.c_str(), std::log2(range / step))});
+  std::vector<double> moves;
+  for (std::size_t i = 1; i < values.size(); ++i) moves.push_back(std::abs(values[i] - values[i - 1]));
+  std::size_t run = 0, longest = 0;
+  for (const double m : moves) longest = std::max(longest, run = m == 0.0 ? run + 1 : 0);
+  const bool at_top = std::count(values.begin(), values.end(), sorted.back()) > 5 || std::count(values.begin(), values.end(), sorted.front()) > 5;
+  if (median(moves) > 0.0 && longest > 8 && !at_top) out.push_back({"frozen", where, text("%zu samples in a row are equal while the signal moves elsewhere", longest + 1)});
+  const auto shared = [&](double v, double next) {
+    const auto n = std::count(values.begin(), values.end(), v), m = std::count(values.begin(), values.end(), next);
+    return n >= 6 && static_cast<double>(n) > 0.01 * static_cast<double>(values.size()) && n > 4 * std::max<std::ptrdiff_t>(1, m);
+  };
+  const auto below = std::lower_bound(sorted.begin(), sorted.end(), sorted.back()), above = std::upper_bound(sorted.begin(), sorted.end(), sorted.front());
+  if (below != sorted.begin() && shared(sorted.back(), *std::prev(below))) out.push_back({"saturation", where, text("the largest value, %.4g %s, is shared by many samples", sorted.back() / c.scale, c.unit.c_str())});
+  if (above != sorted.end() && shared(sorted.front(), *above) && sorted.front() != 0.0) out.push_back({"saturation", where, text("the least value, %.4g %s, is shared by many samples", sorted.front() / c.scale, c.unit.c_str())});
+}
+
+}  // namespace
+
+std::vector<HardwareCheck> check_hardware(const Dataset& d) {
+  std::vector<HardwareCheck> out;
+  for (const Trial& t : d.trials) {
+    check_clock(t, out);
+    for (const std::string& name : d.outputs) check_values(t, d.channel(name), out);
+  }
+  return out;
+}
+
+}  // namespace filum::reconcile

@@ -1,0 +1,176 @@
+// Squares about the points are followed by pyramidal Lucas-Kanade (Bouguet 2001): first from the frame before, for the way, then from
+// the frame in which the pattern was taken, so that errors do not add up. Where the pattern has changed too much for that (a thread that
+// turns), it is taken anew from the frame before and the covariances add up from there.
+// Covariance of a match: 2 s^2 (sum of grad grad^T)^-1 over the square, s^2 the noise of a pixel from the mismatch left, doubled since
+// both pictures are noisy (Szeliski, Computer Vision, 2nd ed., eq. 9.35; Pan et al., Meas. Sci. Technol. 20:062001, 2009, eq. 15).
+// Valid: patterns that move in the picture's plane, brightness constant. Test: tests/video/tracks_test.cpp, rendered motion.
+
+#include "video/tracks.h"
+
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+constexpr int kLevels = 3;
+constexpr double kWorstMatch = 0.35;   // mismatch over the pattern's own contrast, both rms
+constexpr double kQuantisation = 0.29; // [grey levels], rms of rounding to whole levels
+const cv::TermCriteria kStop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60, 1e-4);
+
+struct Followed {
+  cv::Mat reference;                   // frame in which the pattern was taken
+  cv::Point2f origin, now, step;       // [px]
+  Eigen::Matrix2d carried = Eigen::Matrix2d::Zero();  // covariance of `origin`
+  bool lost = false;
+};
+
+cv::Mat square(const cv::Mat& frame, const cv::Point2f& centre, int side) {
+  cv::Mat out;
+  cv::getRectSubPix(frame, cv::Size(side, side), centre, out, CV_32F);
+  return out;
+}
+
+/// Sum of grad grad^T over the square, gradients by central differences.
+Eigen::Matrix2d structure_tensor(const cv::Mat& patch) {
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (int y = 1; y + 1 < patch.rows; ++y)
+    for (int x = 1; x + 1 < patch.cols; ++x) {
+      const Eigen::Vector2d g(0.5 * (patch.at<float>(y, x + 1) - patch.at<float>(y, x - 1)), 0.5 * (patch.at<float>(y + 1, x) - patch.at<float>(y - 1, x)));
+      sum += g * g.transpose();
+    }
+  return sum;
+}
+
+bool inside(const cv::Mat& frame, const cv::Point2f& p) { return p.x >= 0 && p.y >= 0 && p.x <= static_cast<float>(frame.cols - 1) && p.y <= static_cast<float>(frame.rows - 1); }
+
+bool flow(const cv::Mat& from, const cv::Mat& to, const cv::Point2f& start, int side, cv::Point2f& at) {
+  std::vector<cv::Point2f> a = {start}, b = {at};
+  std::vector<unsigned char> found;
+  std::vector<float> error;
+  cv::calcOpticalFlowPyrLK(from, to, a, b, found, error, cv::Size(side, side), kLevels, kStop, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-5);
+  if (found[0] == 0 || !inside(to, b[0])) return false;
+  at = b[0];
+  return true;
+}
+
+struct Match {
+  double mismatch = 0.0;                // over the pattern's contrast
+  Eigen::Matrix2d covariance;           // [px2]
+};
+
+Match judge(const cv::Mat& reference, const cv::Point2f& origin, const cv::Mat& frame, const cv::Point2f& at, int side) {
+  const cv::Mat a = square(reference, origin, side), b = square(frame, at, side);
+  cv::Scalar mean, spread;
+  cv::meanStdDev(a, mean, spread);
+  const double n = static_cast<double>(side) * side, rms = cv::norm(a, b, cv::NORM_L2) / std::sqrt(n);
+  const double noise2 = std::max(0.5 * rms * rms, kQuantisation * kQuantisation);  // of one picture
+  const Eigen::Matrix2d S = structure_tensor(a) + 1e-9 * Eigen::Matrix2d::Identity();
+  return {rms / std::max(spread[0], 1e-6), 2.0 * noise2 * S.inverse()};
+}
+
+void follow(Followed& f, const cv::Mat& before, const cv::Mat& frame, int side, PointTrack& track, Eigen::Index k) {
+  track.position.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+  track.covariance.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (f.lost) return;
+  const cv::Point2f last = f.now;
+  cv::Point2f way = last + f.step;
+  if (!inside(frame, way)) way = last;
+  if (!flow(before, frame, last, side, way)) {
+    f.lost = true;
+    return;
+  }
+  cv::Point2f at = way;
+  bool held = flow(f.reference, frame, f.origin, side, at) && cv::norm(at - way) < 0.25 * side;
+  Match match;
+  if (held) match = judge(f.reference, f.origin, frame, at, side), held = match.mismatch < kWorstMatch;
+  if (!held) {
+    match = judge(f.reference, f.origin, before, last, side);
+    f.carried += match.covariance;
+    f.reference = before.clone();
+    f.origin = last;
+    at = way;
+    match = judge(f.reference, f.origin, frame, at, side);
+    ++track.restarts;
+    if (match.mismatch > 2.0 * kWorstMatch) {
+      f.lost = true;
+      return;
+    }
+  }
+  f.step = at - last;
+  f.now = at;
+  const Eigen::Matrix2d C = f.carried + match.covariance;
+  track.position.col(k) << at.x, at.y;
+  track.covariance.col(k) << C(0, 0), C(0, 1), C(1, 1);
+}
+
+void check_point(const VideoTask& task, const cv::Mat& frame, const Eigen::Vector2d& p, std::size_t i) {
+  const std::string field = "points[" + std::to_string(i) + "]", found = std::to_string(p.x()) + ", " + std::to_string(p.y());
+  const int half = task.patch / 2;
+  if (p.x() < half || p.y() < half || p.x() > frame.cols - 1 - half || p.y() > frame.rows - 1 - half)
+    throw InputError(task.file, field, found, "a point at least " + std::to_string(half) + " pixels inside the picture of " + std::to_string(frame.cols) + " x " + std::to_string(frame.rows));
+  const cv::Mat patch = square(frame, cv::Point2f(static_cast<float>(p.x()), static_cast<float>(p.y())), task.patch);
+  const Eigen::Matrix2d S = structure_tensor(patch);
+  const double least = 0.5 * (S.trace() - std::sqrt(std::pow(S(0, 0) - S(1, 1), 2) + 4 * S(0, 1) * S(0, 1)));
+  if (least < 4.0 * task.patch * task.patch) throw InputError(task.file, field, found, "a marker or texture about it that stands out in both directions");
+}
+
+}  // namespace
+
+VideoTracks track_video(const VideoTask& task) {
+  cv::VideoCapture video(task.file);
+  if (!video.isOpened()) throw InputError(task.file, "video", "a file that cannot be opened", "a video that OpenCV can read");
+  const double rate = video.get(cv::CAP_PROP_FPS);
+  VideoTracks out;
+  std::vector<double> time;
+  std::vector<std::vector<Eigen::Matrix<double, 5, 1>>> rows(task.points.size());
+  std::vector<Followed> followed;
+  cv::Mat colour, frame, before;
+  while (video.read(colour)) {
+    if (colour.channels() == 1) frame = colour.clone();
+    else cv::cvtColor(colour, frame, cv::COLOR_BGR2GRAY);
+    const double stamp = 1e-3 * video.get(cv::CAP_PROP_POS_MSEC);
+    time.push_back(rate > 0 ? static_cast<double>(time.size()) / rate : stamp);
+    const bool first = before.empty();
+    for (std::size_t i = 0; i < task.points.size(); ++i) {
+      PointTrack one{Eigen::Matrix2Xd(2, 1), Eigen::Matrix3Xd(3, 1), 0};
+      if (first) {
+        check_point(task, frame, task.points[i], i);
+        const cv::Point2f p(static_cast<float>(task.points[i].x()), static_cast<float>(task.points[i].y()));
+        followed.push_back({frame.clone(), p, p, {0, 0}, Eigen::Matrix2d::Zero(), false});
+        one.position.col(0) = task.points[i];
+        one.covariance.setZero();  // displacements count from here
+        out.points.emplace_back();
+      } else {
+        follow(followed[i], before, frame, task.patch, one, 0);
+      }
+      out.points[i].restarts += one.restarts;
+      rows[i].emplace_back();
+      rows[i].back() << one.position.col(0), one.covariance.col(0);
+    }
+    out.width = frame.cols;
+    out.height = frame.rows;
+    before = frame.clone();
+  }
+  if (time.size() < 4) throw InputError(task.file, "frames", std::to_string(time.size()), "at least 4 frames");
+  out.time = Eigen::Map<Eigen::VectorXd>(time.data(), static_cast<Eigen::Index>(time.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto n = static_cast<Eigen::Index>(rows[i].size());
+    out.points[i].position.resize(2, n);
+    out.points[i].covariance.resize(3, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      out.points[i].position.col(k) = rows[i][static_cast<std::size_t>(k)].head<2>();
+      out.points[i].covariance.col(k) = rows[i][static_cast<std::size_t>(k)].tail<3>();
+    }
+  }
+  return out;
+}
+
+}  // namespace filum
+
+extern "C" void filum_track_video(const filum::VideoTask& task, filum::VideoTracks& tracks) { tracks = filum::track_video(task); }

@@ -1,0 +1,78 @@
+// The trainer's solvers on the rigs against closed forms: heavy elastica, an arc, a compressed block, a square punch.
+
+#include "reconcile/full_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace filum::reconcile {
+namespace {
+
+TEST(FullSolver, RodOfSmallDeflectionDropsByAnEighth) {
+  const HangingRod r = hang_rod(0.02, {}, 40);
+  ASSERT_TRUE(r.rests);
+  EXPECT_NEAR(r.drop / 0.02 * 8.0, 1.0, 3e-3);
+}
+
+/// theta'' = -(1 - s) G cos(theta), theta(0) = 0, theta'(1) = 0: drop by shooting on theta'(0), Runge-Kutta 4 in 2000 steps.
+double heavy_elastica(double G) {
+  const auto shoot = [&](double bend, double& drop) {
+    const int n = 2000;
+    const double h = 1.0 / n;
+    double th = 0.0, k = bend;
+    drop = 0.0;
+    for (int i = 0; i < n; ++i) {
+      const double s = i * h;
+      const auto f = [&](double at, double angle) { return -(1.0 - at) * G * std::cos(angle); };
+      const double k1 = k, a1 = f(s, th), k2 = k + 0.5 * h * a1, a2 = f(s + 0.5 * h, th + 0.5 * h * k1), k3 = k + 0.5 * h * a2, a3 = f(s + 0.5 * h, th + 0.5 * h * k2);
+      const double k4 = k + h * a3, a4 = f(s + h, th + h * k3), next = th + h / 6.0 * (k1 + 2 * k2 + 2 * k3 + k4);
+      drop += h / 6.0 * (std::sin(th) + 4.0 * std::sin(th + 0.5 * h * k2) + std::sin(next));
+      th = next;
+      k += h / 6.0 * (a1 + 2 * a2 + 2 * a3 + a4);
+    }
+    return k;
+  };
+  double low = 0.0, high = G, drop = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    const double mid = 0.5 * (low + high);
+    (shoot(mid, drop) > 0.0 ? high : low) = mid;
+  }
+  return drop;
+}
+
+TEST(FullSolver, RodUnderItsWeightIsTheHeavyElastica) {
+  for (const double G : {1.0, 8.0, 40.0}) {
+    const HangingRod coarse = hang_rod(G, {}, 30), fine = hang_rod(G, {}, 60);
+    ASSERT_TRUE(coarse.rests && fine.rests) << G;
+    const double exact = heavy_elastica(G);
+    EXPECT_NEAR(fine.drop, exact, 3e-3) << G;
+    EXPECT_LT(std::abs(fine.drop - exact), 0.5 * std::abs(coarse.drop - exact) + 1e-5) << G;
+  }
+}
+
+TEST(FullSolver, RodWithoutWeightKeepsItsNaturalArc) {
+  const double kappa = 0.8;
+  const HangingRod r = hang_rod(0.0, std::vector<double>(41, kappa), 60);
+  ASSERT_TRUE(r.rests);
+  EXPECT_NEAR(r.drop, (1.0 - std::cos(kappa)) / kappa, 3e-3);
+  EXPECT_NEAR(r.reach, std::sin(kappa) / kappa, 3e-3);
+}
+
+TEST(FullSolver, BlockUnderABladeOfItsOwnSizeIsEAOverH) {
+  EXPECT_NEAR(press_stiffness(Vec3(10e-3, 8e-3, 5e-3), 10e-3, 8e-3, 0.0, 3) / (10e-3 * 8e-3 / 5e-3), 1.0, 1e-3);
+}
+
+TEST(FullSolver, SquareBladeOnDeepTissueIsAPunchOnAHalfSpace) {
+  // F/depth = 1.012 (2/sqrt(pi)) sqrt(A) E/(1 - nu^2) without friction (King, Int. J. Solids Struct. 23:1657, 1987); with nu near 1/2 sticking adds
+  // little. The box, ten blades wide and deep, stiffens it by some per cent, and so does a mesh that is coarse at the edge.
+  const double a = 5e-3, nu = 0.49, half_space = 1.012 * 2.0 / std::sqrt(std::numbers::pi) * a / (1.0 - nu * nu);
+  const double coarse = press_stiffness(Vec3(50e-3, 50e-3, 50e-3), a, a, nu, 2) / half_space, fine = press_stiffness(Vec3(50e-3, 50e-3, 50e-3), a, a, nu, 4) / half_space;
+  EXPECT_GT(fine, 0.97);
+  EXPECT_LT(fine, 1.20);
+  EXPECT_LT(std::abs(fine - 1.05), std::abs(coarse - 1.05));
+  std::printf("rigid square blade, deep tissue, over the half-space: %.3f and %.3f with finer cells\n", coarse, fine);
+}
+
+}  // namespace
+}  // namespace filum::reconcile

@@ -1,0 +1,68 @@
+#!/bin/bash
+# Many datasets under mpirun: reports are the same bytes with 1, 2 and 4 processes; after one process was killed the next start repeats only
+# what had no report; the program itself needs no MPI. Usage: ranks_test.sh FILUM ROOT MPIEXEC
+filum=$1 root=$2 mpiexec=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "$1"; exit 1; }
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_btl_base_warn_component_unused=0
+
+ldd "$filum" | grep -qi -E "libmpi|opencv" && fail "the program needs MPI or OpenCV: $(ldd "$filum" | grep -i -E 'libmpi|opencv')"
+
+# blocks of 2 kPa, each with another share of relaxation; every fifth has none
+for i in 01 02 03 04 05 06 07 08 09 10; do
+  mkdir -p "$work/data/block-$i"
+  cat >"$work/data/block-$i/experiment.yaml" <<'YAML'
+format: filum-experiment/1
+title: Block
+source: made by the test
+rig: tissue-block
+specimen: { shape: cuboid, length: "5 mm", width: "5 mm", height: "5 mm" }
+model: { file: brain/linear, free: [youngs_modulus] }
+channels:
+  - { name: time, column: t, unit: s }
+  - { name: displacement, column: u, unit: mm, kind: input }
+  - { name: force, column: F, unit: mN, kind: output, noise: "0.02 mN" }
+trials:
+  - { file: a.csv, protocol: { mode: compression, rate: "1 mm/s" }, repeat: A }
+  - { file: b.csv, protocol: { mode: compression, rate: "1 mm/s" }, repeat: A }
+  - { file: c.csv, protocol: { mode: compression, rate: "4 mm/s" }, repeat: B }
+YAML
+  for run in a:1:1 b:1:2 c:4:3; do
+    IFS=: read -r name speed seed <<<"$run"
+    awk -v speed="$speed" -v seed="$((10#$i * 10 + seed))" -v g="$(((10#$i % 5) * 12))" 'BEGIN { srand(seed); print "t,u,F"; h = 0.02; q = 0
+      for (i = 0; i <= 300; ++i) { t = i * h; u = speed * t; if (u > 0.5) u = 0.5; u = -u
+        if (i > 0) q = (q * (1 - 0.25 * h) + 0.25 * h * (u + last)) / (1 + 0.25 * h); last = u
+        n = -6; for (k = 0; k < 12; ++k) n += rand()
+        printf "%.4f,%.6f,%.6f\n", t, u, 10 * (u - g / 100 * q) + 0.02 * n } }' >"$work/data/block-$i/$name.csv"
+  done
+done
+
+all() { "$mpiexec" -n "$1" "$filum" reconcile --all "$work/data" --out "$2" --repeatable --root "$root" >"$work/log-$1" 2>&1; }
+for n in 1 2 4; do
+  all "$n" "$work/out$n" || fail "$n processes: $(tail -5 "$work/log-$n")"
+  [ "$(find "$work/out$n" -name report.json | wc -l)" = 10 ] || fail "$n processes did not write ten reports"
+  diff -r "$work/out1" "$work/out$n" >"$work/diff" || fail "1 and $n processes differ: $(head -c 400 "$work/diff")"
+done
+grep -q "without MPI" "$work"/log-* && fail "the module was not used: $(grep -h 'without MPI' "$work"/log-*)"
+
+# one of two processes is killed after the first reports are there
+all 2 "$work/killed" &
+for _ in $(seq 400); do
+  [ "$(find "$work/killed" -name report.json 2>/dev/null | wc -l)" -ge 2 ] && break
+  sleep 0.02
+done
+victim=$(pgrep -f -- "^$filum reconcile --all $work/data --out $work/killed" | tail -1)
+[ -n "$victim" ] && kill -9 "$victim"
+wait $! && fail "mpirun did not notice the killed process"
+whole=$(find "$work/killed" -name report.json | sort)
+kept=$(wc -l <<<"$whole")
+[ "$kept" -lt 10 ] || fail "everything was finished before the kill"
+for r in $whole; do cmp -s "$r" "$work/out1/$(basename "$(dirname "$r")")/report.json" || fail "$r is not whole"; done
+stamps=$(stat -c '%n %y' $whole)
+all 2 "$work/killed" || fail "the second start failed"
+[ "$stamps" = "$(stat -c '%n %y' $whole)" ] || fail "finished reports were written again"
+find "$work/killed" -name '*.part' -delete
+diff -r "$work/out1" "$work/killed" >"$work/diff" || fail "after the kill: $(head -c 400 "$work/diff")"
+echo "ten reports equal with 1, 2 and 4 processes; after a kill $kept were kept, $((10 - kept)) repeated"
+exit 0

@@ -1,0 +1,7 @@
+if(TARGET filum_video)
+  filum_test(video/tracks opencv_core opencv_imgproc opencv_videoio)
+  filum_test(video/video_trial filum_reconcile opencv_core opencv_imgproc opencv_videoio)
+else()
+  add_test(NAME video.NotTested COMMAND ${CMAKE_COMMAND} -E echo "SKIPPED: install libopencv-dev to build and test videos in datasets")
+  set_tests_properties(video.NotTested PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED")
+endif()

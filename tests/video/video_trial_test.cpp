@@ -1,0 +1,127 @@
+// Videos as trials of a dataset: channels against the motion that was rendered, and a creeping thread named from films alone.
+
+#include "reconcile/video_trial.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "rendered.h"
+#include "reconcile/result.h"
+#include "tests/reconcile/records.h"
+
+namespace filum::reconcile {
+namespace {
+
+constexpr double kScale = 50e-6;  // [m], of a pixel
+
+/// Right half moves by `of(k)`, left half rests.
+Origin right_half(const std::function<std::array<double, 2>(int)>& of, double middle) {
+  return [=](double x, double y, int k) {
+    const auto m = of(k);
+    return x < middle ? std::array{x, y} : std::array{x - m[0], y - m[1]};
+  };
+}
+
+const std::string kThread =
+    "format: filum-experiment/1\ntitle: thread\nsource: rendered\nrig: suture-cantilever\nspecimen: { diameter: \"40 um\", density: \"1140 kg/m3\" }\n"
+    "model: { file: suture/elastic, free: [youngs_modulus] }\nchannels:\n  - { name: time, column: t, unit: s }\n  - { name: tip_drop, column: d, unit: mm, kind: output }\ntrials:\n";
+
+std::string thread_trial(const std::string& name, const std::string& side) {
+  return "  - { file: " + name + ", protocol: { orientation: " + side + ", overhang: \"10 mm\" }, video: { scale: \"50 um\", points: [ { name: clamp, x: 30, y: 40 }, { name: tip, x: 110, y: 50 } ] } }\n";
+}
+
+TEST(VideoTrial, TipOfAThreadSinksAsRendered) {
+  Folder f;
+  const auto sink = [](int k) { return std::array{-0.02 * k, 0.3 * k}; };
+  ASSERT_TRUE(render(f.file("a.avi"), 60, 150, 110, 1.5, Waves(1), right_half(sink, 70), 1));
+  f.write("experiment.yaml", kThread + thread_trial("a.avi", "down"));
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  const Eigen::VectorXd& drop = d.trials[0].at("tip_drop");
+  ASSERT_EQ(drop.size(), 60);
+  for (int k = 0; k < 60; ++k) EXPECT_NEAR(drop[k], kScale * (10.0 + 0.3 * k), 0.1 * kScale) << k;
+  EXPECT_GT(d.trials[0].tracked.at("tip_drop"), 0.0);
+  EXPECT_LT(d.trials[0].tracked.at("tip_drop"), 0.1 * kScale);
+  EXPECT_NEAR(d.trials[0].time[59], 59 / 25.0, 1e-9);
+}
+
+TEST(VideoTrial, PlatenOfABlockGivesDisplacementAtTheTimesOfTheTable) {
+  Folder f;
+  const Origin press = [](double x, double y, int k) { return y < 60 ? std::array{x, y - 0.2 * k} : std::array{x, y}; };  // the platen comes down
+  ASSERT_TRUE(render(f.file("a.avi"), 50, 100, 130, 1.0, Waves(2), press, 2));
+  std::ostringstream csv;
+  csv << "t,F\n";
+  for (int i = 0; i <= 18; ++i) csv << 1.05 + 0.1 * i << "," << -0.1 * i << "\n";
+  f.write("a.csv", csv.str());
+  f.write("experiment.yaml",
+          block_yaml("  - { file: a.avi, protocol: { mode: compression }, video: { scale: \"20 um\", start: \"1 s\", points: [ { name: platen, x: 50, y: 30 }, { name: base, x: 50, y: 100 } ] } }\n"));
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  const Eigen::VectorXd& u = d.trials[0].at("displacement");
+  ASSERT_EQ(u.size(), 19);
+  for (int i = 0; i <= 18; ++i) EXPECT_NEAR(u[i], -20e-6 * 0.2 * 25.0 * (0.05 + 0.1 * i), 20e-6 * 0.1) << i;
+}
+
+TEST(VideoTrial, MarkersUnderABladeSink) {
+  Folder f;
+  const auto sink = [](int k) { return std::array{0.0, 0.15 * k}; };
+  ASSERT_TRUE(render(f.file("a.avi"), 40, 150, 100, 1.0, Waves(3), right_half(sink, 70), 3));
+  std::ostringstream csv;
+  csv << "t,z,F\n";
+  for (int i = 0; i < 15; ++i) csv << 0.1 * i << "," << 0.05 * i << "," << 0.3 * i << "\n";
+  f.write("a.csv", csv.str());
+  f.write("experiment.yaml",
+          "format: filum-experiment/1\nrig: spatula-press\nspecimen: { shape: box, length: \"60 mm\", width: \"50 mm\", height: \"20 mm\", blade_length: \"14 mm\", blade_width: \"7 mm\" }\n"
+          "model: { file: brain/linear, free: [youngs_modulus] }\nchannels:\n  - { name: time, column: t, unit: s }\n  - { name: depth, column: z, unit: mm, kind: input }\n"
+          "  - { name: force, column: F, unit: mN, kind: output }\n  - { name: u1, column: u1, unit: um, kind: output }\n  - { name: u2, column: u2, unit: um, kind: output }\n"
+          "trials:\n  - { file: a.avi, protocol: { rate: \"1 mm/s\" }, video: { scale: \"10 um\", points: [ { name: u1, x: 30, y: 40 }, { name: u2, x: 110, y: 50 } ] } }\n");
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  for (int i = 0; i < 15; ++i) {
+    EXPECT_NEAR(d.trials[0].at("u1")[i], 0.0, 1e-6) << i;
+    EXPECT_NEAR(d.trials[0].at("u2")[i], 10e-6 * 0.15 * 25.0 * 0.1 * i, 1e-6) << i;
+  }
+}
+
+TEST(VideoTrial, CreepIsNamedFromFilmsAlone) {
+  // G = 1.5 at 10 mm of 40 um thread; the modulus falls by J = 1 + 0.3 ln(1 + t/0.4 s), so the drop of 10 mm x 1.5/8 (1 - ...) grows
+  Folder f;
+  std::string trials;
+  int seed = 10;
+  for (const auto& [name, side] : {std::pair{"a.avi", "down"}, {"b.avi", "up"}, {"c.avi", "down"}, {"d.avi", "up"}}) {
+    const auto sink = [](int k) { return std::array{0.0, 37.0 * 0.3 * std::log1p(k / 10.0)}; };
+    ASSERT_TRUE(render(f.file(name), 75, 150, 130, 2.0, Waves(static_cast<std::uint64_t>(seed)), right_half(sink, 70), static_cast<std::uint64_t>(seed)));
+    ++seed;
+    trials += "  - { file: " + std::string(name) + ", protocol: { orientation: " + side + ", overhang: \"10 mm\" }, repeat: " + (seed % 2 ? "A" : "B") +
+              ", video: { scale: \"50 um\", points: [ { name: clamp, x: 30, y: 20 }, { name: tip, x: 110, y: 57 } ] } }\n";
+  }
+  f.write("experiment.yaml", kThread + trials);
+  const Result r = reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  EXPECT_EQ(r.effects[0].effect, Effect::bending_creep);
+  ASSERT_TRUE(r.confirmation.has_value());
+  EXPECT_TRUE(r.confirmation->holds);
+}
+
+TEST(VideoTrial, RefusesWithWhatWasExpected) {
+  const auto refusal = [](const std::string& yaml, bool with_video) {
+    Folder f;
+    f.write("experiment.yaml", yaml);
+    if (with_video) render(f.file("a.avi"), 8, 150, 110, 0.0, Waves(1), [](double x, double y, int) { return std::array{x, y}; }, 1);
+    else f.write("a.avi", "no video");
+    try {
+      load_dataset(f.path(), FILUM_SOURCE_DIR);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const std::string good = kThread + thread_trial("a.avi", "down");
+  const auto with = [&](const std::string& a, const std::string& b) { return std::string(good).replace(good.find(a), a.size(), b); };
+  EXPECT_NE(refusal(good, false).find("a video that OpenCV can read"), std::string::npos);
+  EXPECT_NE(refusal(with("name: tip,", "name: knee,"), true).find("points named clamp and tip"), std::string::npos);
+  EXPECT_NE(refusal(with("scale: \"50 um\", ", ""), true).find("scale"), std::string::npos);
+  EXPECT_NE(refusal(with("x: 110", "x: 148"), true).find("inside the picture"), std::string::npos);
+  EXPECT_NE(refusal(block_yaml("  - { file: a.avi, protocol: { mode: compression }, video: { scale: \"20 um\", points: [ { name: platen, x: 50, y: 30 }, { name: base, x: 50, y: 80 } ] } }\n"), true).find("a.csv with time and a column \"F\""),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace filum::reconcile
