@@ -133,10 +133,48 @@ void add_line(const Fitter& fitter, const Fit& base, const Form& form, double lo
   found.push_back({form.effect, &form, at - w, at + w, line.frequency, squared_rms(all, at - w, at + w, around), line.gain, narrow.bins});
 }
 
-/// A beat is no pure sine: its second and third harmonic belong to it.
-bool overtone(const Found& f, double frequency, double step) {
-  if (f.effect != Effect::pulsation) return false;
-  return std::abs(frequency - 2.0 * f.frequency) < 3.0 * step || std::abs(frequency - 3.0 * f.frequency) < 3.0 * step;
+/// What least squares leaves of a record when sine and cosine of these frequencies are free.
+double left_without(const Eigen::VectorXd& time, const std::vector<double>& frequencies, Eigen::VectorXd& r) {
+  const auto m = 2 * static_cast<Eigen::Index>(frequencies.size());
+  Eigen::MatrixXd B(r.size(), m);
+  Eigen::VectorXd y = r;
+  for (Eigen::Index n = 0; n < r.size(); ++n) {
+    const bool there = std::isfinite(r[n]);
+    if (!there) y[n] = 0.0;
+    for (Eigen::Index k = 0; k < m; k += 2) {
+      const double phase = 6.283185307179586 * frequencies[static_cast<std::size_t>(k / 2)] * (time[n] - time[0]);
+      B(n, k) = there ? std::cos(phase) : 0.0;
+      B(n, k + 1) = there ? std::sin(phase) : 0.0;
+    }
+  }
+  const Eigen::MatrixXd A = B.transpose() * B;
+  r -= B * (A + 1e-9 * A.trace() * Eigen::MatrixXd::Identity(m, m)).ldlt().solve(B.transpose() * y);
+  double sum = 0.0;
+  for (const double v : r)
+    if (std::isfinite(v)) sum += v * v;
+  return sum;
+}
+
+/// The records without the lines that were found, so that what leaks from a strong line is not taken for something left over. A beat is no
+/// pure sine: its second and third harmonic belong to it.
+Fit without_lines(const Dataset& d, const Fit& base, const std::vector<Found>& found) {
+  Fit out = base;
+  for (std::size_t i = 0; i < out.residual.size(); ++i)
+    for (Eigen::VectorXd& r : out.residual[i])
+      for (const Found& f : found) {
+        if (f.form == nullptr) continue;
+        const double span = d.trials[i].time[d.trials[i].samples() - 1] - d.trials[i].time[0];
+        Eigen::VectorXd best = r;
+        double least = 1e300;
+        for (int k = -4; k <= 4; ++k) {  // the line was found on a grid of 0.3/span
+          const double at = f.frequency + 0.05 * k / span;
+          Eigen::VectorXd trial = r;
+          const double sum = left_without(d.trials[i].time, f.effect == Effect::pulsation ? std::vector<double>{at, 2 * at, 3 * at} : std::vector<double>{at}, trial);
+          if (sum < least) least = sum, best = trial;
+        }
+        r = best;
+      }
+  return out;
 }
 
 /// Power beside what was named, in octaves: what nobody explains.
@@ -146,7 +184,7 @@ Band leftover(const std::vector<Spectrum>& all, const std::vector<Found>& found)
   for (Spectrum& s : rest)
     for (const Found& f : found)
       for (std::size_t k = s.power.size(); k-- > 0;)
-        if ((s.frequency[k] >= f.low - 2 * s.step && s.frequency[k] <= f.high + 2 * s.step) || overtone(f, s.frequency[k], s.step))
+        if (s.frequency[k] >= f.low - 2 * s.step && s.frequency[k] <= f.high + 2 * s.step)
           s.power.erase(s.power.begin() + static_cast<std::ptrdiff_t>(k)), s.frequency.erase(s.frequency.begin() + static_cast<std::ptrdiff_t>(k));
   const double top = all[0].frequency.back();
   for (double f = std::max(0.12, 4.0 * all[0].step); f < top; f *= 1.6) {
@@ -315,7 +353,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   }
   if (t.evidence > 4.0 && std::none_of(found.begin(), found.end(), [](const Found& f) { return f.effect == Effect::physiological_tremor; }))
     r.tried.push_back({{Effect::physiological_tremor}, "", -t.evidence, 0.0, false, "no band of random phase between 8 and 12 Hz stands out enough"});
-  const Band left = leftover(all, found);
+  const Band left = leftover(spectra(model, without_lines(d, base, found), stated, false), found);
   const double detrended = std::sqrt(squared_rms(all, left.low, left.high, 1.0));
   const bool unexplained = left.evidence > 45.0 && left.mean > 1.25 && detrended > r.rules.materiality * model.full_scale(d.outputs[0]);
   r.fit = gap_in(all, found);

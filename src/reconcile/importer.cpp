@@ -1,5 +1,6 @@
 #include "reconcile/importer.h"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
@@ -80,7 +81,8 @@ std::vector<std::string> muscle(const std::string& folder, const std::string& ou
 
 /// A three-axis cell is read as two channels of a bridge at a time: load on the axis itself stands where forceps have their angle (1 N as 1
 /// rad, since a bridge answers to what bends it), load on another axis where they have the grip, so that cross-talk is cross-talk.
-/// Published in gram-force, free of the weight of the cell's own parts ("corrected"); no clock, no replicates.
+/// Published in gram-force, free of the weight of the cell's own parts ("corrected"); no clock, no replicates, ten loads a pair: the noise is stated as half a
+/// gram-force, what a full matrix leaves of these cells.
 std::vector<std::string> load_cells(const std::string& folder, const std::string& out) {
   constexpr double kGramForce = 9.80665e-3;  // [N]
   const std::string axes = "xyz";
@@ -95,10 +97,12 @@ std::vector<std::string> load_cells(const std::string& folder, const std::string
         fs::create_directories(to);
         const Eigen::VectorXd load = column(std::string("force_") + own) * kGramForce, side = column(std::string("force_") + other) * kGramForce, counts = column(std::string("corrected_") + own);
         const Eigen::VectorXd third = column(std::string("force_") + static_cast<char>('x' + 'y' + 'z' - own - other));
+        const double noise = 0.5 * kGramForce * std::abs((counts.maxCoeff() - counts.minCoeff()) / std::max(load.maxCoeff() - load.minCoeff(), 1e-9));
         std::string yaml = std::string("format: filum-experiment/1\ntitle: \"Load cell ") + cell + ", axis " + own + " against load on " + other +
                            " (1 rad stands for 1 N)\"\nsource: FARE-KE repository, 2025\nrig: forceps-bridge\nspecimen: { bits: 24, reference: \"5 V\" }\n"
                            "model: { file: forceps/linear, free: [strain_gain, strain_offset] }\nchannels:\n  - { name: angle, column: own_N, unit: rad, kind: input }\n"
-                           "  - { name: grip_force, column: other_N, unit: N, kind: input }\n  - { name: strain_counts, column: counts, unit: count, kind: output }\ntrials:\n";
+                           "  - { name: grip_force, column: other_N, unit: N, kind: input }\n  - { name: strain_counts, column: counts, unit: count, kind: output, noise: \"" +
+                           std::to_string(noise) + " count\" }\ntrials:\n";
         for (const bool aside : {false, true}) {
           std::ostringstream s;
           s << "own_N,other_N,counts\n";

@@ -187,9 +187,11 @@ std::string clock_condition(const Dataset& d, Effect e) {
 std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& forms, double masked, double testable) {
   const Dataset& d = model.data();
   Noise noise;
+  double clearer = 1.0;  // where less noise than 1 % of full scale is stated
   for (const std::string& name : d.outputs) {
     const double fs = model.full_scale(name);
     noise.output.push_back({0.01 * fs, 0.0, fs, ""});
+    if (const double stated = d.channel(name).noise; stated > 0.0) clearer = std::max(clearer, std::pow(0.01 * fs / stated, 2));
   }
   Fitter fitter(model, noise);
   Fit base;
@@ -216,7 +218,7 @@ std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& fo
       const auto at = best.find(e);
       if (at == best.end()) why = "these trials never bring it about";
       else if (at->second.masked > masked) why = "a change of the baseline's own parameters imitates it (masked to " + std::to_string(static_cast<int>(std::floor(1000 * at->second.masked)) / 10) + " %)";
-      else if (at->second.seen < testable) why = "even a strong effect would change these records by less than their noise";
+      else if (at->second.seen * clearer < testable) why = "even a strong effect would change these records by less than their noise";
     }
     if (!why.empty()) out.push_back({e, why, info(e).shows});
   }

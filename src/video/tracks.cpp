@@ -7,6 +7,9 @@
 
 #include "video/tracks.h"
 
+#include <Eigen/LU>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
@@ -19,7 +22,9 @@ namespace filum {
 namespace {
 
 constexpr int kLevels = 3;
-constexpr double kWorstMatch = 0.35;   // mismatch over the pattern's own contrast, both rms
+constexpr double kGoodMatch = 0.08;    // mismatch over the pattern's own contrast, both rms, that is good whatever the noise
+constexpr double kWorse = 1.4;         // than against the frame before, by which a match to the first look tells that the look has changed
+constexpr double kLost = 0.7;
 constexpr double kQuantisation = 0.29; // [grey levels], rms of rounding to whole levels
 const cv::TermCriteria kStop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60, 1e-4);
 
@@ -87,17 +92,18 @@ void follow(Followed& f, const cv::Mat& before, const cv::Mat& frame, int side, 
   }
   cv::Point2f at = way;
   bool held = flow(f.reference, frame, f.origin, side, at) && cv::norm(at - way) < 0.25 * side;
-  Match match;
-  if (held) match = judge(f.reference, f.origin, frame, at, side), held = match.mismatch < kWorstMatch;
+  const Match step = judge(before, last, frame, way, side);
+  Match match = step;
+  if (held) match = judge(f.reference, f.origin, frame, at, side), held = match.mismatch < std::max(kGoodMatch, kWorse * step.mismatch);
   if (!held) {
     match = judge(f.reference, f.origin, before, last, side);
     f.carried += match.covariance;
     f.reference = before.clone();
     f.origin = last;
     at = way;
-    match = judge(f.reference, f.origin, frame, at, side);
+    match = step;
     ++track.restarts;
-    if (match.mismatch > 2.0 * kWorstMatch) {
+    if (match.mismatch > kLost) {
       f.lost = true;
       return;
     }

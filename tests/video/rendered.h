@@ -12,12 +12,12 @@
 namespace filum {
 
 struct Waves {
-  std::array<std::array<double, 4>, 24> wave{};  // kx, ky [rad/px], phase, height
+  std::array<std::array<double, 4>, 10> wave{};  // kx, ky [rad/px], phase, height
   explicit Waves(std::uint64_t seed) {
     Rng rng(seed);
     for (auto& w : wave) {
       const double k = 6.283 / (6.0 + 14.0 * rng.uniform()), turn = 6.283 * rng.uniform();
-      w = {k * std::cos(turn), k * std::sin(turn), 6.283 * rng.uniform(), 12.0};
+      w = {k * std::cos(turn), k * std::sin(turn), 6.283 * rng.uniform(), 18.0};
     }
   }
   double operator()(double x, double y) const {
