@@ -14,8 +14,8 @@ namespace filum::reconcile {
 namespace {
 
 constexpr double kTwoSided = 1.96;
-constexpr double kForm = 0.015;  // relative, 1 sd: gain error of the sensor and the form of the law, which no fit can see
-constexpr double kWiden = 1.5;   // curvature understates the spread of nonlinear fits (development half)
+constexpr double kForm = 0.02;   // relative, 1 sd: gain error of the sensor and the form of the law, which no fit can see
+constexpr double kWiden = 2.1;   // curvature understates the spread of nonlinear fits whose law is not quite the true one (development half: 90 to 93 % cover)
 
 Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high) {
   if (!std::isfinite(sd)) return {name, unit, value, low, high};
@@ -65,7 +65,7 @@ Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const s
   const double mid = median(all);
   double var = 0.0;
   for (const double a : all) var += (a - mid) * (a - mid) / std::max<double>(1.0, static_cast<double>(all.size()) - 1.0);
-  const double half = kTwoSided * std::sqrt(var / static_cast<double>(std::max<std::size_t>(1, all.size()))) + 0.02 * mid;
+  const double half = 1.4 * kTwoSided * std::sqrt(var / static_cast<double>(std::max<std::size_t>(1, all.size()))) + 0.02 * mid;
   const double blur = line_blur(d, p[0]);
   std::string unit = "-";
   for (const ChannelInfo& c : info(d.rig).channels)

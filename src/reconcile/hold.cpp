@@ -243,7 +243,7 @@ Estimate line_amplitude(const Dataset& d, const Fit& base, const Noise& noise, d
   if (weight <= 0.0) return {"amplitude", "m", 0.0, 0.0, INFINITY};
   const double mean = sum / weight;
   for (const auto& [a, w] : all) spread += w * (a - mean) * (a - mean) / weight;
-  const double half = 1.96 * std::sqrt(1.0 / weight + spread / static_cast<double>(all.size())) + 0.02 * mean;
+  const double half = 1.4 * 1.96 * std::sqrt(1.0 / weight + spread / static_cast<double>(all.size())) + 0.02 * mean;
   return {"amplitude", "m", mean, std::max(0.0, mean - half), mean + half};
 }
 
