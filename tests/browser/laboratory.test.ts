@@ -91,7 +91,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
   it.skipIf(!existsSync(feederProgram))("leads through the whole calibration of a handle and puts it to use", { timeout: 300_000 }, async () => {
     const link = join(data, "handle"), counts = join(data, "counts.yaml"); // whose pad rests within the amplifier's range
     writeFileSync(counts, readFileSync(join(__dirname, "../../models/forceps/default.yaml"), "utf8").replace("zero: 100 count", "zero: 500 count"));
-    const feeder: ChildProcess = spawn(feederProgram, ["curricula/tip-hold/demonstration.yaml", "--calibration", counts, "--link", link, "--by-hand", "--rate", "2500", "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: ["pipe", "ignore", "ignore"] });
+    const feeder: ChildProcess = spawn(feederProgram, ["curricula/tip-hold/demonstration.yaml", "--calibration", counts, "--link", link, "--by-hand", "--rate", "5000", "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: ["pipe", "ignore", "ignore"] });
     try {
       await until(() => existsSync(link), (there) => there, "the handle is there");
       trainer = await startTrainer("--datasets", data, "--serial", link);
@@ -114,7 +114,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
       await taken(0);
       for (let k = 0; k < plan.length; ++k) {
         feeder.stdin!.write(`${plan[k][0]} ${plan[k][1]}\n`);
-        await until(() => page.textContent(".instruction"), (text) => /(Set the opening|Load the pad)/.test(text ?? ""), "it asks for a value");
+        await page.waitForFunction(() => /(Set the opening|Load the pad)/.test(document.querySelector(".instruction")?.textContent ?? ""));
         if (k === 3) { // one is read by mistake and taken back, by keyboard
           expect(await page.textContent(".instruction")).toContain("18 deg");
           await page.keyboard.press("Backspace");
@@ -129,11 +129,11 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
         if (k === 0) await page.focus("[data-step=go]");
         await page.keyboard.press("Enter"); // the button keeps the focus from value to value
         if (k < plan.length - 1) {
-          await until(async () => {
-            const text = (await page.textContent(".calibrate")) ?? "";
-            if (text.includes("No reading within 5 s")) await page.keyboard.press("Enter"); // on a machine that stood still: once more
-            return text.includes(`${k + 1} of 40 values`);
-          }, (done) => done, `${k + 1} values are taken`);
+          const done = () => page.waitForFunction((n) => new RegExp(`\\b${n} of 40 values|No reading within`).exec(document.querySelector(".calibrate")?.textContent ?? "")?.[0], k + 1);
+          while (String(await (await done()).jsonValue()).includes("No reading")) { // on a machine that stood still: once more
+            await page.keyboard.press("Enter");
+            await page.waitForTimeout(500);
+          }
         }
         if (k === 0) expect(await page.textContent(".live-count")).toContain("counts now");
       }
