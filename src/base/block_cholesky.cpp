@@ -53,8 +53,6 @@ BlockCholesky::BlockCholesky(int max_nodes) {
   update_.reserve(n * kReservePerNode * 8);
   diagonal_.reserve(n);
   lower_.reserve(n * kReservePerNode);
-  kept_diagonal_.reserve(n);
-  kept_lower_.reserve(n * kReservePerNode);
 }
 
 void BlockCholesky::begin_pattern(int n) noexcept {
@@ -159,16 +157,6 @@ BlockCholesky::Slot BlockCholesky::find(int i, int j) const noexcept {
 void BlockCholesky::set_zero() noexcept {
   for (Mat4& m : diagonal_) m.setZero();
   for (Mat4& m : lower_) m.setZero();
-}
-
-void BlockCholesky::keep() noexcept {
-  kept_diagonal_ = diagonal_;
-  kept_lower_ = lower_;
-}
-
-void BlockCholesky::go_back() noexcept {
-  diagonal_ = kept_diagonal_;
-  lower_ = kept_lower_;
 }
 
 bool BlockCholesky::factor() noexcept {

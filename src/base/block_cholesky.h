@@ -41,9 +41,6 @@ class BlockCholesky {
   Slot find(int i, int j) const noexcept;
 
   void set_zero() noexcept;
-  /// Keeps the blocks added so far, and comes back to them for another matrix that shares this part.
-  void keep() noexcept;
-  void go_back() noexcept;
   void add_diagonal(int i, const Mat4& block) noexcept { diagonal_[position_[i]] += block; }
   void add(Slot slot, const Mat4& block) noexcept {
     if (slot.transposed)
@@ -77,7 +74,6 @@ class BlockCholesky {
   std::vector<int> update_;            // target block of each (a, b), a > b, pair of each column, column by column
   std::vector<Mat4> diagonal_;         // factor: L_kk^-1 (lower) after factor()
   std::vector<Mat4> lower_;            // L_ik
-  std::vector<Mat4> kept_diagonal_, kept_lower_;
 };
 
 }  // namespace filum

@@ -51,24 +51,4 @@ inline FrictionPoint coulomb(const Vec3& xi_trial, const Vec3& normal, double N,
   return r;
 }
 
-/// The law made linear about `expected`, the trial bristle that a solver expects to end with: force at xi_trial and stiffness of the tangent
-/// there. Newton's method on the tangent of the present point alone swings for ever between slip to and fro.
-inline FrictionPoint coulomb_about(const Vec3& expected, const Vec3& xi_trial, const Vec3& normal, double N, double mu, double k_t) noexcept {
-  FrictionPoint r = coulomb(expected, normal, N, mu, k_t);
-  r.force += r.stiffness * (expected - xi_trial);
-  return r;
-}
-
-/// The tangent to go on with when one of `model` leads to `expected`; false if it is `model` itself. Slip that would turn back is taken for
-/// stick, whose next expectation tells which way it slips, if at all.
-inline bool expect_friction(const Vec3& expected, const Vec3& xi_trial, const Vec3& normal, double N, double mu, double k_t,
-                            FrictionPoint& model) noexcept {
-  const bool beyond = k_t * expected.norm() > mu * N * (1.0 + 1e-3);
-  const bool on = model.slipping && expected.dot(model.xi) > 0.0;
-  if (model.slipping ? on && beyond : !beyond) return false;
-  const Vec3 about = model.slipping ? Vec3(Vec3::Zero()) : expected;
-  model = coulomb_about(about, xi_trial, normal, N, mu, k_t);
-  return true;
-}
-
 }  // namespace filum

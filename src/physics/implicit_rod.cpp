@@ -11,15 +11,10 @@ namespace {
 
 constexpr int kMostHalvings = 14;
 constexpr int kMostTethers = 256;
-constexpr int kMostRounds = 4;  // of contact prediction in a Newton step
 constexpr int kMoreToArrive = 3;  // times the iterations while a body is under way: the next step takes it for arrived, and it must not jump over thread
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
 constexpr double kLeastReach = 0.05;    // [radii], of the search for near pairs
 constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
-
-/// How much of the way the normal forces that friction goes by move in an iteration: all of it at first; but in a knot they can swing
-/// between two values for ever, which averaging ends.
-double load_share(int iteration) noexcept { return iteration < 4 ? 1.0 : iteration < 8 ? 0.5 : 0.25; }
 
 double node_span(const RodState& s, int i) noexcept {
   double l = 0.0;
@@ -70,9 +65,8 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
   for (;; ++summary.iterations) {
     summary.arrived = advance_boundary(s);
     fit_geometry(s);
-    const double share = load_share(summary.iterations);
-    contact_.update(x_, material.radius, contact_material, share);
-    obstacles.update(x_, material.radius, contact_material, share);
+    contact_.update(x_, material.radius, contact_material, FrictionLoad::falling);
+    obstacles.update(x_, material.radius, contact_material, FrictionLoad::falling);
     assemble_gradient(s, o);
     summary.residual = gradient_.leftCols(s.n).topRows<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     const double moment = gradient_.leftCols(s.n).row(3).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / material.radius;
@@ -129,8 +123,8 @@ void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodSte
 /// it did, and a strand that is being pushed together need not find its buckled shape anew in every step.
 void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   advance_boundary(s);
-  contact_.update(x_, material.radius, contact_material);
-  obstacles.update(x_, material.radius, contact_material);
+  contact_.update(x_, material.radius, contact_material, FrictionLoad::anew);
+  obstacles.update(x_, material.radius, contact_material, FrictionLoad::anew);
   move_.leftCols(s.n).topRows<3>() = o.dt * s.v.leftCols(s.n);
   move_.leftCols(s.n).row(3) = o.dt * s.theta_dot.head(s.n).transpose();
   for (int i = 0; i < s.n; ++i)
@@ -154,8 +148,8 @@ double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, do
   if (self_contact && length > kLongestReach * material.radius) fraction = kLongestReach * material.radius / length;
   if (travelled_ + fraction * length > reach_) {
     find_near(s, memory, std::max(fraction * length, 2.0 * material.radius));
-    contact_.update(x_, material.radius, contact_material);
-    obstacles.update(x_, material.radius, contact_material);
+    contact_.update(x_, material.radius, contact_material, FrictionLoad::anew);
+    obstacles.update(x_, material.radius, contact_material, FrictionLoad::anew);
     fraction = contact_.overflowed() ? 0.0 : std::min(fraction, reach_ / length);
   }
   if (self_contact) fraction = std::min(fraction, contact_.free_fraction(x_, move_, material.radius));
@@ -200,7 +194,6 @@ void ImplicitRod::fit_pattern(int n) noexcept {
     return;
   }
   pattern_n_ = n;
-  stiffness_fits_ = false;
   matrix_.begin_pattern(n);
   for (int i = 0; i + 1 < n; ++i) matrix_.connect(i, i + 1);
   for (int i = 0; i + 2 < n; ++i) matrix_.connect(i, i + 2);
@@ -265,6 +258,7 @@ void ImplicitRod::assemble_gradient(const RodState& s, const RodStepOptions& o) 
 
 void ImplicitRod::assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept {
   const StageScope stage("stiffness");
+  if (contact_.pattern_stale()) fit_pattern(s.n);
   matrix_.set_zero();
   const double dt = o.dt;
   for (int i = 0; i < s.n; ++i) {
@@ -279,27 +273,8 @@ void ImplicitRod::assemble_stiffness(const RodState& s, const RodStepOptions& o,
   add_elastic_hessian(stiffened_, s, geometry_, kind, chain_, matrix_);
   grasps.add_stiffness(chain_, matrix_);
   tethers.add_stiffness(x_, o.dt, chain_, matrix_);
-  matrix_.keep();
-  stiffness_fits_ = true;
-  kind_kept_ = kind;
-}
-
-/// The matrix of the contacts expected now on top of what does not depend on them, and the right-hand side.
-void ImplicitRod::add_contact_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept {
-  const StageScope stage("stiffness");
-  if (contact_.pattern_stale()) fit_pattern(s.n);
-  if (stiffness_fits_ && kind == kind_kept_) {
-    matrix_.go_back();
-  } else {
-    assemble_stiffness(s, o, kind);
-  }
-  move_.leftCols(s.n) = -gradient_.leftCols(s.n);
-  if (self_contact) {
-    contact_.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
-    contact_.add_expected(material.radius, contact_material, chain_, move_, matrix_);
-  }
+  if (self_contact) contact_.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
   obstacles.add_stiffness(x_, material.radius, contact_material, chain_, matrix_);
-  obstacles.add_expected(contact_material, chain_, move_, matrix_);
 }
 
 /// The largest tension or contact force [N]: what an unbalanced force is small against.
@@ -312,50 +287,36 @@ double ImplicitRod::force_scale(const RodState& s) const noexcept {
   return scale;
 }
 
-/// move_ from the stiffness with the springs of the contacts expected now; the exact one where it can be factorised and does not
-/// throw nodes about, else that of Gauss and Newton (compressed strands make it so).
-bool ImplicitRod::solve_direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept {
-  for (;;) {
-    add_contact_stiffness(s, o, kind);
+/// Newton direction in move_, with the exact stiffness where it can be factorised and does not throw nodes about, else with that of Gauss
+/// and Newton (compressed strands make it so).
+bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffness& kind) noexcept {
+  for (;; kind = Stiffness::gauss_newton) {
+    assemble_stiffness(s, o, kind);
     const bool factored = matrix_.factor();
-    double length = 0.0;
-    if (factored) {
-      matrix_.solve(move_.leftCols(s.n));
-      length = largest_move(move_, s.n);
-      if (length <= o.longest_move || kind == Stiffness::gauss_newton) {
-        if (length > o.longest_move) move_.leftCols(s.n) *= o.longest_move / length;
-        return true;
-      }
-    } else if (kind == Stiffness::gauss_newton) {
-      return false;
-    }
-    kind = Stiffness::gauss_newton;
-    ++summary.fallbacks;
+    if (!factored && kind == Stiffness::gauss_newton) return false;
+    if (!factored) continue;
+    move_.leftCols(s.n) = -gradient_.leftCols(s.n);
+    matrix_.solve(move_.leftCols(s.n));
+    const double length = largest_move(move_, s.n);
+    if (length > o.longest_move && kind == Stiffness::exact) continue;
+    if (length > o.longest_move) move_.leftCols(s.n) *= o.longest_move / length;
+    return true;
   }
 }
 
-/// Newton direction; solved again while it leads into contacts that the matrix does not know yet.
-bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept {
-  for (int round = 0; round < kMostRounds; ++round) {
-    if (!solve_direction(s, o, kind, summary)) return false;
-    const bool strands = self_contact && contact_.expect(move_, material.radius, contact_material);
-    const bool bodies = obstacles.expect(move_, material.radius, contact_material);
-    if (!strands && !bodies) break;
-  }
-  return true;
-}
-
-/// Newton step. Expected contacts that contradict each other can lead uphill; then the direction that knows of none is taken.
+/// Newton step; where the exact stiffness leads nowhere, that of Gauss and Newton is tried before a last small move.
 bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o, RodStepSummary& summary) noexcept {
   Stiffness kind = Stiffness::exact;
-  stiffness_fits_ = false;
-  if (!direction(s, o, kind, summary)) return false;
-  if (advance(s, memory, o)) return true;
-  fit_geometry(s);
-  contact_.forget_expected();
-  obstacles.forget_expected();
-  if (!solve_direction(s, o, kind, summary)) return false;
-  if (!advance(s, memory, o)) try_move(s, std::ldexp(1.0, -kMostHalvings), std::numeric_limits<double>::infinity(), o);  // rounding
+  if (!direction(s, o, kind)) return false;
+  bool moved = advance(s, memory, o);
+  if (!moved && kind == Stiffness::exact) {
+    kind = Stiffness::gauss_newton;
+    fit_geometry(s);
+    if (!direction(s, o, kind)) return false;
+    moved = advance(s, memory, o);
+  }
+  if (!moved) try_move(s, std::ldexp(1.0, -kMostHalvings), std::numeric_limits<double>::infinity(), o);  // rounding
+  summary.fallbacks += kind == Stiffness::gauss_newton;
   return true;
 }
 

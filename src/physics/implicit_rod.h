@@ -2,8 +2,8 @@
 // One implicit time step of the thread with everything that touches it: backward Euler solved by Newton's method.
 //
 // The step is the minimiser of   1/2 |q - q^|^2_M / dt^2 + U_elastic + U_gravity + U_drag + U_contact + U_grasp,
-// q^ = q_n + dt v_n (Martin et al., ACM TOG 30(4):72, 2011, eq. 4), with the normal forces of friction taken from
-// the last Newton iterate. Each iterate is reached by a line search on that sum, and by no more than
+// q^ = q_n + dt v_n (Martin et al., ACM TOG 30(4):72, 2011, eq. 4), with the normal forces of friction taken
+// from its start (FrictionLoad). Each iterate is reached by a line search on that sum, and by no more than
 // the fraction of the move that provably crosses nothing, so every accepted shape has the topology of the one before.
 // Internal friction (Kelvin-Voigt) in backward Euler form, EI (|kappa - kappa0|^2 + r |kappa - kappa_n|^2)/2 with r = time/dt, is a
 // stiffness (1 + r) EI about the rest shape (kappa0 + r kappa_n)/(1 + r), and is computed as that.
@@ -86,10 +86,8 @@ class ImplicitRod {
   bool advance_boundary(const RodState& s) noexcept;
   void assemble_gradient(const RodState& s, const RodStepOptions& o) noexcept;
   void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
-  void add_contact_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
   double force_scale(const RodState& s) const noexcept;
-  bool solve_direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept;
-  bool direction(const RodState& s, const RodStepOptions& o, Stiffness& kind, RodStepSummary& summary) noexcept;
+  bool direction(const RodState& s, const RodStepOptions& o, Stiffness& kind) noexcept;
   bool newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o, RodStepSummary& summary) noexcept;
   void predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   double free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept;
@@ -113,8 +111,6 @@ class ImplicitRod {
   double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
   double travelled_ = 0.0;
   bool geometry_fits_ = false;  // geometry_ is that of x_ and theta_
-  bool stiffness_fits_ = false; // what the matrix keeps is the stiffness without contacts at x_ and theta_, of kind_kept_
-  Stiffness kind_kept_ = Stiffness::exact;
 };
 
 }  // namespace filum

@@ -172,7 +172,7 @@ void RodContact::remember(std::vector<ContactBristle>& memory) const noexcept {
   }
 }
 
-void RodContact::update(const Points& x, double radius, const ContactMaterial& m, double share) noexcept {
+void RodContact::update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept {
   const StageScope stage("contact laws");
   for (RodPair& p : pairs_) {
     const SegmentPair c = measure(x, p.i, p.j);
@@ -181,8 +181,7 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
     p.distance = c.distance;
     p.normal = c.d / c.distance;
     p.force = -pair_potential(c.distance, radius, m.stiffness).slope;
-    p.load += share * (p.force - p.load);
-    p.expected = false;
+    p.load = load == FrictionLoad::anew ? p.force : std::min(p.load, p.force);
     join(p, p.force > 0.0);
   }
 }
@@ -201,7 +200,7 @@ void RodContact::add_gradient(const Points& x, const Points& x_start, const Cont
   for (RodPair& p : pairs_) {
     if (p.force <= 0.0) continue;
     p.trial = trial_bristle(p, x, x_start);
-    p.model = p.friction = coulomb(p.trial, p.normal, p.load, m.friction, m.stick(m.friction, p.load));
+    p.friction = coulomb(p.trial, p.normal, p.load, m.friction, m.stick(m.friction, p.load));
     const Vec3 force = p.force * p.normal + p.friction.force;  // on the first edge
     const Weights w = weights(p);
     for (int a = 0; a < 4; ++a) gradient.col(w.node[a]).head<3>() -= w.w[a] * force;
@@ -213,7 +212,7 @@ void RodContact::add_stiffness(const Points& x, double radius, const ContactMate
   for (const RodPair& p : pairs_) {
     if (p.force <= 0.0) continue;
     const double curvature = pair_potential(p.distance, radius, m.stiffness).curvature;
-    const Mat3 k = curvature * p.normal * p.normal.transpose() + p.model.stiffness;
+    const Mat3 k = curvature * p.normal * p.normal.transpose() + p.friction.stiffness;
     add_block(p, k, chain, matrix);
     add_tilt(p, x, chain, matrix);
   }
@@ -240,49 +239,6 @@ void RodContact::add_block(const RodPair& p, const Mat3& k, const ChainSlots& ch
     for (int b = 0; b < 2; ++b) matrix.add(p.slots[2 * a + b], pad(w.w[a] * w.w[2 + b] * k));
   matrix.add(chain.next[p.i], pad(w.w[0] * w.w[1] * k));
   matrix.add(chain.next[p.j], pad(w.w[2] * w.w[3] * k));
-}
-
-void RodContact::forget_expected() noexcept {
-  for (RodPair& p : pairs_) {
-    p.expected = false;
-    p.model = p.friction;
-  }
-}
-
-bool RodContact::expect(const Eigen::Matrix4Xd& move, double radius, const ContactMaterial& m) noexcept {
-  bool changed = false;
-  for (RodPair& p : pairs_) {
-    const Weights w = weights(p);
-    if (p.force > 0.0) {
-      Vec3 slip = p.trial;
-      for (int a = 0; a < 4; ++a) slip += w.w[a] * move.col(w.node[a]).head<3>();
-      slip -= slip.dot(p.normal) * p.normal;
-      changed = expect_friction(slip, p.trial, p.normal, p.load, m.friction, m.stick(m.friction, p.load), p.model) || changed;
-      continue;
-    }
-    double gap = p.distance - 2.0 * radius;
-    for (int a = 0; a < 4; ++a) gap += w.w[a] * p.normal.dot(move.col(w.node[a]).head<3>());
-    const bool touches = gap < (p.expected ? 0.0 : -1e-4 * radius);
-    changed = changed || touches != p.expected;
-    p.expected = touches;
-    join(p, touches);
-  }
-  return changed;
-}
-
-void RodContact::add_expected(double radius, const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
-                              BlockCholesky& matrix) const noexcept {
-  for (const RodPair& p : pairs_) {
-    const Weights w = weights(p);
-    if (p.force > 0.0) {
-      for (int a = 0; a < 4; ++a) rhs.col(w.node[a]).head<3>() += w.w[a] * (p.model.force - p.friction.force);
-      continue;
-    }
-    if (!p.expected) continue;
-    const Vec3 pull = -expected_stiffness(m.stiffness) * (p.distance - 2.0 * radius) * p.normal;  // towards the surface
-    for (int a = 0; a < 4; ++a) rhs.col(w.node[a]).head<3>() += w.w[a] * pull;
-    add_block(p, expected_stiffness(m.stiffness) * p.normal * p.normal.transpose(), chain, matrix);
-  }
 }
 
 double RodContact::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept {

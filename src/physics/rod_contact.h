@@ -47,15 +47,18 @@ struct RodPair {
   Vec3 normal = Vec3::UnitX();        // unit, from edge j to edge i
   double distance = 1;                // [m], of the axes
   double force = 0;                   // [N], normal
-  double load = 0;                    // [N], normal force by which friction goes in this iteration
-  bool expected = false;              // not touching yet, but would after the Newton step
+  double load = 0;                    // [N], normal force by which friction goes
   bool joined = false;                // has its blocks in the matrix: near enough to touch soon
   Vec3 xi_start = Vec3::Zero();       // [m], bristle at the start of the step
   Vec3 trial = Vec3::Zero();          // [m], bristle before return mapping
   FrictionPoint friction;
-  FrictionPoint model;                // tangent of friction that the Newton step goes by
   BlockCholesky::Slot slots[4];       // blocks (i,j), (i,j+1), (i+1,j), (i+1,j+1)
 };
+
+/// The normal force that friction goes by within a step: the one at the step's start, or the present one if that is less. (Solving for both
+/// together has no convex sum to minimise, and going by the present force alone swings: a strand that presses deeper in one iteration is held harder
+/// in the next. Li et al. 2020, section 5.4, keep it for the whole step.) What touches first in this step slides freely in it.
+enum class FrictionLoad { anew, falling };
 
 class RodContact {
  public:
@@ -79,24 +82,14 @@ class RodContact {
   /// Writes the bristles of touching pairs for the next step (capacity reserved by the caller).
   void remember(std::vector<ContactBristle>& memory) const noexcept;
 
-  /// Distances, normals and normal forces at x; friction goes by a load that moves by `share` of the way to the normal force
-  /// and then stays fixed in energy() until the next call.
-  void update(const Points& x, double radius, const ContactMaterial& m, double share = 1.0) noexcept;
+  /// Distances, normals, normal forces and loads of friction at x; the loads then stay fixed in energy() until the next call.
+  void update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept;
   /// Potential [J] at x (friction with the normal forces of the last update).
   double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept;
   /// Adds the gradient, then the stiffness, at the configuration of the last update.
   void add_gradient(const Points& x, const Points& x_start, const ContactMaterial& m, Eigen::Matrix4Xd& gradient) noexcept;
   void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
                      BlockCholesky& matrix) const noexcept;
-
-  /// Looks where `move` would lead: pairs that would overlap, to first order, are expected to touch, those expected before that
-  /// would part again are not. True if the set changed. Without this a strand could only creep up on another one, halving the
-  /// gap with every Newton step.
-  bool expect(const Eigen::Matrix4Xd& move, double radius, const ContactMaterial& m) noexcept;
-  void forget_expected() noexcept;
-  /// Adds the springs of the expected pairs, at rest at the surface, to the right-hand side and the matrix.
-  void add_expected(double radius, const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
-                    BlockCholesky& matrix) const noexcept;
 
   /// Largest fraction of `move` (4 x n, only the first three rows count) that provably crosses nothing.
   double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;
@@ -133,10 +126,6 @@ struct PairPotential {
 /// Hertz contact of a round thread: F = k o sqrt(o / 0.6 h), o the overlap, h the radius; k is the secant stiffness where o = 0.6 h.
 PairPotential squeeze(double overlap, double radius, double stiffness) noexcept;
 PairPotential pair_potential(double distance, double radius, double stiffness) noexcept;
-
-
-/// Stiffness of the spring that stands for a contact that is only expected: that of a light one.
-inline double expected_stiffness(double stiffness) noexcept { return 0.3 * stiffness; }
 
 /// Fraction of a move for two segments (ends a0, a1, b0, b1 with displacements da0 ...) that keeps them apart, by
 /// conservative advancement. `keep` [m]: distance of the axes at which the advance stops (0 < keep < present distance).

@@ -142,13 +142,12 @@ Vec3 RodObstacles::trial_bristle(const ObstacleTouch& t, const Points& x, const 
   return xi - xi.dot(t.normal) * t.normal;
 }
 
-void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m, double share) noexcept {
+void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept {
   const StageScope stage("contact laws");
   for (ObstacleTouch& t : touches_) {
     measure(x, radius, t);
     t.force = -wall(t.gap, radius, m).slope;
-    t.load += share * (t.force - t.load);
-    t.expected = false;
+    t.load = load == FrictionLoad::anew ? t.force : std::min(t.load, t.force);
   }
 }
 
@@ -171,7 +170,7 @@ void RodObstacles::add_gradient(const Points& x, const Points& x_start, double r
     if (t.force <= 0.0) continue;
     const Obstacle& o = obstacles[static_cast<std::size_t>(t.obstacle)];
     t.trial = trial_bristle(t, x, x_start);
-    t.model = t.friction = coulomb(t.trial, t.normal, t.load, o.friction, m.stick(o.friction, t.load));
+    t.friction = coulomb(t.trial, t.normal, t.load, o.friction, m.stick(o.friction, t.load));
     const Vec3 on_thread = t.force * t.normal + t.friction.force;
     gradient.col(t.edge).head<3>() -= (1.0 - t.s) * on_thread;
     gradient.col(t.edge + 1).head<3>() -= t.s * on_thread;
@@ -186,7 +185,7 @@ void RodObstacles::add_stiffness(const Points& x, double radius, const ContactMa
                                  BlockCholesky& matrix) const noexcept {
   for (const ObstacleTouch& t : touches_) {
     if (t.force <= 0.0) continue;
-    const Mat3 k = wall(t.gap, radius, m).curvature * t.normal * t.normal.transpose() + t.model.stiffness;
+    const Mat3 k = wall(t.gap, radius, m).curvature * t.normal * t.normal.transpose() + t.friction.stiffness;
     add_block(t, k, chain, matrix);
     const auto b = static_cast<std::size_t>(t.obstacle);
     if (obstacles[b].kind == Obstacle::Kind::plane || t.s <= 0.0 || t.s >= 1.0) continue;
@@ -197,47 +196,6 @@ void RodObstacles::add_stiffness(const Points& x, double radius, const ContactMa
     matrix.add_diagonal(t.edge, block);
     matrix.add_diagonal(t.edge + 1, block);
     matrix.add(chain.next[t.edge], -block);
-  }
-}
-
-void RodObstacles::forget_expected() noexcept {
-  for (ObstacleTouch& t : touches_) {
-    t.expected = false;
-    t.model = t.friction;
-  }
-}
-
-bool RodObstacles::expect(const Eigen::Matrix4Xd& move, double radius, const ContactMaterial& m) noexcept {
-  bool changed = false;
-  for (ObstacleTouch& t : touches_) {
-    const Vec3 step = (1.0 - t.s) * move.col(t.edge).head<3>() + t.s * move.col(t.edge + 1).head<3>();
-    if (t.force > 0.0) {
-      const double mu = obstacles[static_cast<std::size_t>(t.obstacle)].friction;
-      const Vec3 slip = t.trial + step - step.dot(t.normal) * t.normal;
-      changed = expect_friction(slip, t.trial, t.normal, t.load, mu, m.stick(mu, t.load), t.model) || changed;
-      continue;
-    }
-    const bool touches = t.gap + t.normal.dot(step) < (t.expected ? 0.0 : -1e-4 * radius);
-    changed = changed || touches != t.expected;
-    t.expected = touches;
-  }
-  return changed;
-}
-
-void RodObstacles::add_expected(const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs,
-                                BlockCholesky& matrix) const noexcept {
-  for (const ObstacleTouch& t : touches_) {
-    if (t.force > 0.0) {
-      const Vec3 turn = t.model.force - t.friction.force;
-      rhs.col(t.edge).head<3>() += (1.0 - t.s) * turn;
-      rhs.col(t.edge + 1).head<3>() += t.s * turn;
-    }
-    if (!t.expected) continue;
-    const double k = expected_stiffness(m.wall_ratio * m.stiffness);
-    const Vec3 pull = -k * t.gap * t.normal;
-    rhs.col(t.edge).head<3>() += (1.0 - t.s) * pull;
-    rhs.col(t.edge + 1).head<3>() += t.s * pull;
-    add_block(t, k * t.normal * t.normal.transpose(), chain, matrix);
   }
 }
 

@@ -34,12 +34,10 @@ struct ObstacleTouch {
   Vec3 normal = Vec3::UnitZ();        // unit, from the obstacle to the thread
   double gap = 1;                     // [m], between the surfaces
   double force = 0;                   // [N], normal
-  double load = 0;                    // [N], normal force by which friction goes in this iteration
-  bool expected = false;              // see RodContact::expect
+  double load = 0;                    // [N], normal force by which friction goes, see FrictionLoad
   Vec3 xi_start = Vec3::Zero();       // [m], turned with the body
   Vec3 trial = Vec3::Zero();          // [m], bristle before return mapping
   FrictionPoint friction;
-  FrictionPoint model;                // tangent of friction that the Newton step goes by, see RodContact::expect
 };
 
 class RodObstacles {
@@ -57,15 +55,12 @@ class RodObstacles {
   /// Moves every body on towards X_end as far as the thread at x lets it without being jumped over. True when all are there.
   bool advance_bodies(const Points& x, double radius) noexcept;
 
-  void update(const Points& x, double radius, const ContactMaterial& m, double share = 1.0) noexcept;
+  void update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept;
   double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept;
   void add_gradient(const Points& x, const Points& x_start, double radius, const ContactMaterial& m,
                     Eigen::Matrix4Xd& gradient) noexcept;
   void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
                      BlockCholesky& matrix) const noexcept;
-  bool expect(const Eigen::Matrix4Xd& move, double radius, const ContactMaterial& m) noexcept;
-  void forget_expected() noexcept;
-  void add_expected(const ContactMaterial& m, const ChainSlots& chain, Eigen::Matrix4Xd& rhs, BlockCholesky& matrix) const noexcept;
   double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;
 
   const std::vector<ObstacleTouch>& touches() const noexcept { return touches_; }

@@ -69,26 +69,5 @@ TEST(Friction, LightlyLoadedContactGivesByThePresliding) {
   EXPECT_DOUBLE_EQ(stick_stiffness(1e4, 0.2, 10.0, 0.5e-6), 1e4);
 }
 
-/// A block of no mass on a spring that is pulled and let back: the model that the expectations settle on gives the solution of the
-/// law, in stick, in slip and where slip turns back.
-TEST(Friction, ExpectedTangentSolvesASpringThatIsPulledToAndFro) {
-  const double spring = 40.0, N = 1e-3, mu = 0.3, k_t = 500.0;  // [N/m], [N], [-], [N/m]
-  for (double pull : {-60e-6, -5e-6, 0.2e-6, 5e-6, 60e-6}) {    // [m]
-    for (double start : {-30e-6, -0.3e-6, 0.3e-6, 30e-6}) {     // [m], where the solver begins
-      const Vec3 n = Vec3::UnitZ(), xi(start, 0, 0);
-      FrictionPoint model = coulomb(xi, n, N, mu, k_t);
-      Vec3 end = xi;
-      int rounds = 0;
-      do {
-        const double k = spring + model.stiffness(0, 0);
-        end = xi + Vec3((spring * (pull - start) + model.force.x()) / k, 0, 0);
-      } while (expect_friction(end, xi, n, N, mu, k_t, model) && ++rounds < 10);
-      EXPECT_LT(rounds, 5) << pull << ' ' << start;
-      const FrictionPoint law = coulomb(end, n, N, mu, k_t);
-      EXPECT_NEAR(spring * (pull - end.x()) + law.force.x(), 0.0, 2e-3 * mu * N) << pull << ' ' << start;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace filum

@@ -155,7 +155,7 @@ TEST(RodContact, ForceIsMinusTheGradientOfTheEnergy) {
   m.friction = 0.0;
   RodContact contact(6, 20);
   contact.find_pairs(s, x, kRadius, 1e-5);
-  contact.update(x, kRadius, m);
+  contact.update(x, kRadius, m, FrictionLoad::anew);
   ASSERT_EQ(contact.n_touching(kRadius), 1);
   Eigen::Matrix4Xd gradient = Eigen::Matrix4Xd::Zero(4, 6);
   contact.add_gradient(x, x, m, gradient);
