@@ -25,7 +25,8 @@ refused() {
 }
 
 "$filum" list --json >list.json
-for task in tip-hold trace grasp-transfer; do expect list.json "d.tasks.some((t) => t.name === '$task')"; done
+for task in tip-hold trace grasp-transfer; do expect list.json "d.tasks.some((t) => t.name === '$task' && t.curriculum === 'research')"; done
+expect list.json "d.curricula.includes('research')"
 
 for task in trace grasp-transfer; do
   "$filum" run "$task" --input demo --record "$task.rec" --json >"$task.json"

@@ -91,7 +91,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
   it.skipIf(!existsSync(feederProgram))("leads through the whole calibration of a handle and puts it to use", { timeout: 300_000 }, async () => {
     const link = join(data, "handle"), counts = join(data, "counts.yaml"); // whose pad rests within the amplifier's range
     writeFileSync(counts, readFileSync(join(__dirname, "../../models/forceps/default.yaml"), "utf8").replace("zero: 100 count", "zero: 500 count"));
-    const feeder: ChildProcess = spawn(feederProgram, ["curricula/tip-hold/demonstration.yaml", "--calibration", counts, "--link", link, "--by-hand", "--rate", "5000", "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: ["pipe", "ignore", "ignore"] });
+    const feeder: ChildProcess = spawn(feederProgram, ["curricula/research/tip-hold/demonstration.yaml", "--calibration", counts, "--link", link, "--by-hand", "--rate", "5000", "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: ["pipe", "ignore", "ignore"] });
     try {
       await until(() => existsSync(link), (there) => there, "the handle is there");
       trainer = await startTrainer("--datasets", data, "--serial", link);

@@ -170,7 +170,7 @@ TEST(LabWatch, ABrokenObjectIsLostAndCounted) {
 
 TEST(LabWatch, TheTasksOfTheLaboratoryAreReadAndScored) {
   for (const char* name : {"tip-hold", "trace", "grasp-transfer"}) {
-    const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + name + "/task.yaml");
+    const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/research/" + name + "/task.yaml");
     EXPECT_TRUE(task.laboratory);
     EXPECT_EQ(task.max_total(), 100.0) << name;
     SceneDescription s = scene();
