@@ -20,6 +20,7 @@ const std::map<std::string, std::vector<std::string>> kMayUse = {
     {"collision", {"base"}},
     {"devices", {"base", "hardware"}},
     {"tracker", {"base", "devices"}},
+    {"anatomy", {"base"}},
     {"physics", {"base", "collision"}},
     {"world", {"base", "collision", "physics"}},
     {"haptics", {"base", "world", "devices"}},

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   filum::add_doctor(app, action);
   filum::add_reconcile(app, action);
   filum::add_import(app, action);
+  filum::add_mesh(app, action);
   const auto subcommands = app.get_subcommands([](CLI::App*) { return true; });
   const auto named = [&](const CLI::App* sub) { return sub->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && std::none_of(subcommands.begin(), subcommands.end(), named)) {

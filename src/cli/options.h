@@ -37,6 +37,7 @@ void add_calibrate(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_reconcile(CLI::App& app, Action& action);
 void add_import(CLI::App& app, Action& action);
+void add_mesh(CLI::App& app, Action& action);
 
 /// --root and --json.
 void add_common(CLI::App& command, CommonOptions& options);

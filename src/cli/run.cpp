@@ -19,6 +19,7 @@ struct RunOptions {
   std::string task, input = "demo", model, record, forceps;
   bool real_time = false;
   double motion_scale = 1.0;
+  double stiffness = 1.0;
   int stream_port = 0;     // of OpenIGTLink, 0 none
   double longest = 600.0;  // [s]
 };
@@ -46,7 +47,7 @@ void print_text(const LiveOutcome& outcome) {
 }
 
 int run(const RunOptions& o) {
-  Setup setup = load_setup(o.common.root, o.task, o.model);
+  Setup setup = load_setup(o.common.root, o.task, o.model, o.stiffness);
   InputDevices inputs = open_inputs(o.input, o.common.root, o.task, o.motion_scale, o.forceps);
   std::unique_ptr<Recorder> recorder;
   if (!o.record.empty()) recorder = make_recorder(o.record, setup, inputs.description);
@@ -88,6 +89,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("task", o->task, "Name of the task, e.g. knot-square (see filum list)")->required();
   command->add_option("--input", o->input, "demo, serial:PATH, haptic:[ADDRESS:]PORT, igtl:[ADDRESS:]PORT, several joined by +, a demonstration (*.yaml) or a recording")->capture_default_str();
   command->add_option("--model", o->model, "Suture or brain file to use instead of the scene's, or a model.yaml of filum reconcile");
+  command->add_option("--stiffness", o->stiffness, "Of the brain, times the model's: 0.1 to 10");
   command->add_option("--forceps", o->forceps, "Calibration of the forceps on serial:PATH (from filum calibrate forceps)");
   command->add_option("--record", o->record, "Store the session in this new file");
   command->add_option("--motion-scale", o->motion_scale, "Movement in the scene over that of the hand")->check(CLI::Range(0.001, 10.0))->capture_default_str();

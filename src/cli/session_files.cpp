@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -9,10 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/yaml_file.h"
 #include "cli/options.h"
 #include "cli/security.h"
 #include "training/result_json.h"
 #include "training/task_session.h"
+#include "world/brain_model.h"
 #include "world/model.h"
 
 namespace filum {
@@ -22,6 +25,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kModelOverride = "models/override.yaml";
+constexpr const char* kDial = "models/stiffness-dial.yaml";
 
 std::string read_whole(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
@@ -38,7 +42,10 @@ std::string new_folder() {
 Setup setup_of(const RecordingReader& recording, const std::string& folder) {
   recording.write_sources(folder);
   const std::string model = folder + "/" + kModelOverride;
-  return load_setup(folder, recording.meta().task, fs::exists(model) ? model : "");
+  const std::string dial = folder + "/" + kDial;
+  double stiffness = 1.0;
+  if (fs::exists(dial)) stiffness = YamlNode::load(dial).number("stiffness", Range::between(0.1, 10.0));
+  return load_setup(folder, recording.meta().task, fs::exists(model) ? model : "", stiffness);
 }
 
 std::string message_of(Json result, const std::string& session) {
@@ -47,6 +54,7 @@ std::string message_of(Json result, const std::string& session) {
     if (!result.contains(key)) return {};
     message[key] = std::move(result[key]);
   }
+  if (result.contains("pressure_map")) message["pressure_map"] = std::move(result["pressure_map"]);
   return message.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -65,6 +73,15 @@ std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& se
   options.meta.n_tools = scene.n_tools;
   options.sources = read_sources(setup.root);
   if (!setup.model_file.empty()) options.sources.push_back({kModelOverride, read_whole(setup.model_file)});
+  if (setup.stiffness != 1.0) {
+    char text[48];
+    std::snprintf(text, sizeof text, "stiffness: %.17g\n", setup.stiffness);
+    options.sources.push_back({kDial, text});
+  }
+  if (const auto& brain = setup.model->brain; brain && !brain->mesh_file.empty()) {
+    const std::string beside = setup.model_file.empty() ? "models/brain/" : "models/";
+    options.sources.push_back({beside + brain->mesh_name, read_whole(brain->mesh_file)});
+  }
   return std::make_unique<Recorder>(std::move(options));
 }
 
@@ -96,6 +113,7 @@ Json result_document(const Result& result) {
   Json document = Json::parse(result_json(result));
   document.erase("series");
   document.erase("paths");
+  document.erase("pressure_map");
   return document;
 }
 

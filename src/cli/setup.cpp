@@ -4,6 +4,8 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "world/brain_model.h"
+#include "world/model.h"
 #include "world/task_folder.h"
 
 namespace filum {
@@ -12,6 +14,18 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string task_file(const std::string& root, const std::string& task) { return root + "/" + task_folder(root, task) + "/task.yaml"; }
+
+/// The model with both moduli of its brain multiplied.
+std::shared_ptr<const Model> turned(std::shared_ptr<const Model> model, double stiffness) {
+  if (stiffness == 1.0) return model;
+  if (!model->brain) throw InputError("--stiffness", "stiffness", std::to_string(stiffness), "a task of brain retraction");
+  if (!(stiffness >= 0.1 && stiffness <= 10.0)) throw InputError("--stiffness", "stiffness", std::to_string(stiffness), "0.1 to 10 times the model's");
+  auto brain = std::make_shared<BrainModel>(*model->brain);
+  for (FemMaterial& tissue : brain->regions) tissue.young *= stiffness;
+  auto m = std::make_shared<Model>(*model);
+  m->brain = std::move(brain);
+  return m;
+}
 
 }  // namespace
 
@@ -23,7 +37,7 @@ std::vector<std::string> task_names(const std::string& root) {
   return names;
 }
 
-Setup load_setup(const std::string& root, const std::string& task, const std::string& model_file) {
+Setup load_setup(const std::string& root, const std::string& task, const std::string& model_file, double stiffness) {
   const std::vector<std::string> names = task_names(root);
   if (names.empty()) throw InputError("--root", "curricula", root, "a folder with models/ and curricula/");
   if (std::find(names.begin(), names.end(), task) == names.end()) {
@@ -31,7 +45,7 @@ Setup load_setup(const std::string& root, const std::string& task, const std::st
     for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
     throw InputError("curricula", "task", task, "one of: " + all);
   }
-  return {root, model_file, load_model(root, task, model_file), load_task(task_file(root, task))};
+  return {root, model_file, turned(load_model(root, task, model_file), stiffness), load_task(task_file(root, task)), stiffness};
 }
 
 std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& problems) {

@@ -15,10 +15,11 @@ struct Setup {
   std::string model_file;  // empty: the scene's own
   std::shared_ptr<const Model> model;
   Task task;
+  double stiffness = 1.0;  // of a brain, times the model's: the surgeon's dial
 };
 
 /// Throws InputError; an unknown task is answered with the names of those there are.
-Setup load_setup(const std::string& root, const std::string& task, const std::string& model_file = "");
+Setup load_setup(const std::string& root, const std::string& task, const std::string& model_file = "", double stiffness = 1.0);
 
 /// Names of the folders below curricula/ that hold a task, in order.
 std::vector<std::string> task_names(const std::string& root);

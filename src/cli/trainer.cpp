@@ -39,7 +39,7 @@ HelloView hello_of(const TrainerOptions& options) {
     const bool shown = std::filesystem::exists(demonstration_file(options.root, task.name));
     any_shown = any_shown || shown;
     if (task.demonstration_only && !shown) continue;  // there is nothing to do in it
-    hello.tasks.push_back({task.name, task.title, task.description, task.demonstration_only});
+    hello.tasks.push_back({task.name, task.title, task.description, task.demonstration_only, task.retraction != nullptr});
   }
   for (const std::string& problem : problems) std::fprintf(stderr, "filum: task left out: %s\n", problem.c_str());
   hello.inputs = {"pointer"};
@@ -66,6 +66,7 @@ TaskView task_view_of(const TaskStatus& s) {
   const PressureLimits& l = p.limits();
   RetractionView& r = view.retraction;
   r.present = true;
+  r.blind = s.blind;
   r.pressure = p.pressure() / kMmHg;
   r.alarm = l.alarm / kMmHg;
   r.dose = p.dose() / (60.0 * kMmHg);
@@ -247,7 +248,7 @@ void Trainer::start_task(const StartMessage& start) {
   view_.recording = false;
   view_.session.clear();
   publish_state("loading");
-  Setup setup = load_setup(options_.root, start.task, options_.model_file);
+  Setup setup = load_setup(options_.root, start.task, options_.model_file, start.stiffness);
   LiveDevices devices;
   if (start.input == "device") devices = {options_.serial_port, lab_.calibration(), options_.hands, options_.motion_scale};
   if (start.input == "device" && !devices.any()) throw InputError("start", "input", "device", "a trainer started with --serial PATH or --hands");

@@ -20,7 +20,24 @@ SurfaceTree::SurfaceTree(std::vector<Triangle> triangles, const Points& nodes) :
   nodes_.reserve(triangles_.size() + 1);
   nodes_.emplace_back();
   if (!triangles_.empty()) cut(0, 0, static_cast<int>(triangles_.size()), centres);
+  list_corners();
   refit(nodes);
+}
+
+void SurfaceTree::list_corners() {
+  for (const Triangle& t : triangles_) used_.insert(used_.end(), t.begin(), t.end());
+  std::sort(used_.begin(), used_.end());
+  used_.erase(std::unique(used_.begin(), used_.end()), used_.end());
+  placed_.assign(4 * used_.size(), 0.0f);
+  for (Node& n : nodes_) {
+    n.corner = static_cast<int>(corners_.size());
+    for (int k = n.first; k < n.first + n.count; ++k)
+      for (const int i : triangles_[static_cast<std::size_t>(order_[static_cast<std::size_t>(k)])])
+        corners_.push_back(static_cast<int>(std::lower_bound(used_.begin(), used_.end(), i) - used_.begin()));
+    std::sort(corners_.begin() + n.corner, corners_.end());
+    corners_.erase(std::unique(corners_.begin() + n.corner, corners_.end()), corners_.end());
+    n.corners = static_cast<int>(corners_.size()) - n.corner;
+  }
 }
 
 void SurfaceTree::cut(int node, int first, int count, const Points& centres) {
@@ -50,25 +67,37 @@ void SurfaceTree::cut(int node, int first, int count, const Points& centres) {
 
 void SurfaceTree::refit(const Points& positions) noexcept {
   constexpr float kRounding = 1e-6f;  // of the largest coordinate: more than float rounds away
+  for (std::size_t k = 0; k < used_.size(); ++k) {
+    const double* const p = positions.data() + 3 * static_cast<std::ptrdiff_t>(used_[k]);
+    for (std::size_t c = 0; c < 3; ++c) placed_[4 * k + c] = static_cast<float>(p[c]);
+  }
   for (std::size_t k = nodes_.size(); k-- > 0;) {
     Node& n = nodes_[k];
-    n.low.fill(kFar);
-    n.high.fill(-kFar);
-    for (int t = n.first; t < n.first + n.count; ++t)
-      for (const int i : triangles_[static_cast<std::size_t>(order_[static_cast<std::size_t>(t)])]) {
-        const double* const p = positions.data() + 3 * static_cast<std::ptrdiff_t>(i);
-        for (std::size_t c = 0; c < 3; ++c) {
-          const auto x = static_cast<float>(p[c]);
-          n.low[c] = std::min(n.low[c], x - kRounding * std::abs(x));
-          n.high[c] = std::max(n.high[c], x + kRounding * std::abs(x));
+    std::array<float, 4> low, high;
+    low.fill(kFar);
+    high.fill(-kFar);
+    if (n.count > 0) {
+      for (int i = n.corner; i < n.corner + n.corners; ++i) {
+        const float* const x = placed_.data() + 4 * static_cast<std::ptrdiff_t>(corners_[static_cast<std::size_t>(i)]);
+        for (std::size_t c = 0; c < 4; ++c) {
+          low[c] = std::min(low[c], x[c]);
+          high[c] = std::max(high[c], x[c]);
         }
       }
-    if (n.count > 0 || triangles_.empty()) continue;
-    const Node &a = nodes_[static_cast<std::size_t>(n.first)], &b = nodes_[static_cast<std::size_t>(n.first) + 1];
-    for (std::size_t c = 0; c < 4; ++c) {
-      n.low[c] = std::min(a.low[c], b.low[c]);
-      n.high[c] = std::max(a.high[c], b.high[c]);
+      for (std::size_t c = 0; c < 4; ++c) {
+        const float wide = kRounding * std::max(std::abs(low[c]), std::abs(high[c]));
+        low[c] -= wide;
+        high[c] += wide;
+      }
+    } else if (!triangles_.empty()) {
+      const Node &a = nodes_[static_cast<std::size_t>(n.first)], &b = nodes_[static_cast<std::size_t>(n.first) + 1];
+      for (std::size_t c = 0; c < 4; ++c) {
+        low[c] = std::min(a.low[c], b.low[c]);
+        high[c] = std::max(a.high[c], b.high[c]);
+      }
     }
+    n.low = low;
+    n.high = high;
   }
 }
 

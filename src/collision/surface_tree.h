@@ -31,11 +31,17 @@ class SurfaceTree {
   struct Node {
     std::array<float, 4> low, high;
     int first = 0, count = 0;  // leaf: triangles order_[first ...]; inner: children first and first + 1, count 0
+    int corner = 0, corners = 0;  // of a leaf: corners_[corner ...]
   };
   void cut(int node, int first, int count, const Points& centres);
 
+  void list_corners();
+
   std::vector<Triangle> triangles_;
   std::vector<int> order_;
+  std::vector<int> used_;      // nodes of the triangles, ascending
+  std::vector<float> placed_;  // four numbers for each of them: where it is
+  std::vector<int> corners_;   // of each leaf, places in `used_`, each once
   std::vector<Node> nodes_;  // children come after their parent
 };
 

@@ -45,6 +45,7 @@ struct DeviceHealth {
 /// Forces to be felt by the hands, of all tools.
 struct HandForces {
   std::array<Vec3, kMaxTools> force{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // [N], frame W
+  std::array<Vec3, kMaxTools> torque{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // [N m], about the tip, for those that can show it
   std::array<bool, kMaxTools> valid{};                                          // false: no force
 };
 

@@ -187,6 +187,58 @@ void bench_task(BenchResult& r, const std::string& task, const TaskOpener& open_
       });
 }
 
+/// What steps at a fixed rate took; each begins when it is due or, if that is past, at once.
+struct Paced {
+  std::vector<double> ms;
+  int overruns = 0;  // ended after the next one was due
+};
+
+template <class Step, class Look>
+Paced run_paced(double dt_ms, int steps, Step step, Look look) {
+  Paced paced;
+  auto due = Clock::now();
+  for (int k = 0; k < steps; ++k) {
+    std::this_thread::sleep_until(due);
+    const auto begin = Clock::now();
+    step();
+    paced.ms.push_back(milliseconds_since(begin));
+    look();
+    due = std::max(due, begin) + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::milli>(dt_ms));
+    if (Clock::now() > due) ++paced.overruns;
+  }
+  return paced;
+}
+
+/// A brain of 10,800 nodes at 100 Hz, and on another thread needle, thread and vessel at 500 Hz.
+void bench_classroom(BenchResult& r, const TaskOpener& open_task) {
+  constexpr const char* kSuture = "vessel-stitch";
+  const DrivenTask driven = open_task(kSuture);
+  World world(driven.model);
+  Inputs inputs = driven.inputs(world);
+  const auto brain = pressed_block();
+  const double dt_ms = 1e3 * world.description().dt;
+  Reference reference;
+  for (int k = 0; k < 10; ++k) reference.run();
+  Paced suture;
+  std::thread other([&] {
+    suture = run_paced(dt_ms, static_cast<int>(r.steps * r.dt_ms / dt_ms), [&] { world.step(inputs); }, [&] { inputs = driven.inputs(world); });
+  });
+  const auto begin = Clock::now();
+  const Paced own = run_paced(r.dt_ms, r.steps, brain, [] {});
+  r.real_time_factor = r.dt_ms * r.steps / milliseconds_since(begin);
+  other.join();
+  r.p50_ms = percentile(own.ms, 0.5);
+  r.p99_ms = percentile(own.ms, 0.99);
+  r.max_ms = percentile(own.ms, 1.0);
+  r.stages = {{"brain: overruns (number)", own.overruns},
+              {"vessel-stitch: steps (number)", static_cast<double>(suture.ms.size())},
+              {"vessel-stitch: p50", percentile(suture.ms, 0.5)},
+              {"vessel-stitch: p99", percentile(suture.ms, 0.99)},
+              {"vessel-stitch: overruns (number)", suture.overruns}};
+  r.reference_name = Reference::kName;
+  r.reference_p50_ms = reference.p50();
+}
+
 struct Bench {
   BenchResult stated;
   std::function<void(BenchResult&, const TaskOpener&)> run;
@@ -229,6 +281,8 @@ std::vector<Bench> all_benches() {
     list.push_back({r, [run = run, timer](BenchResult& result, const TaskOpener&) { run(result, timer); }});
   for (const StitchBench& b : stitch_benches())
     list.push_back({stated(b.name, 0, 0), [b, timer](BenchResult& r, const TaskOpener& open) { run_stitch_bench(b, r, timer, open); }});
+  list.push_back({stated("classroom", 10800, 500), bench_classroom});
+  list.back().stated.dt_ms = 10.0;
   return list;
 }
 

@@ -2,11 +2,15 @@
 
 #include "evidence/brain_bench.h"
 
+#include <sys/resource.h>
+#include <time.h>
+
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
 
 #include "evidence/brain_block.h"
 #include "world/cortex.h"
@@ -24,6 +28,24 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+/// Of this thread: other programs do not count.
+double processor_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+double quantile(std::vector<double> v, double share) {
+  std::sort(v.begin(), v.end());
+  return v.empty() ? 0.0 : v[std::min(v.size() - 1, static_cast<std::size_t>(share * static_cast<double>(v.size())))];
+}
+
 FemOptions run_time(double dt) {
   FemOptions o;
   o.dt = dt;
@@ -31,6 +53,7 @@ FemOptions run_time(double dt) {
   o.stiffness_damping = 10e-3;
   o.single_precision = true;
   o.solver.relative = 1e-3;
+  o.solver.absolute = 20e-6;
   o.solver.max_iterations = 60;
   return o;
 }
@@ -87,19 +110,31 @@ void time_rivals(const LinearFem& fem, BenchResult& r) {
   r.stages.emplace_back("rival: Jacobi CG to 1e-6, cold", median(ms));
 }
 
-void bench_block(BenchResult& r, const StepTimer& timer, TetMesh mesh, double blade, double deepest, bool rivals) {
+SpatulaParameters spread_over_6_mm() {
   SpatulaParameters parameters;
   parameters.reach = 6e-3;
-  BrainBlock block(std::move(mesh), run_time(1e-3 * r.dt_ms), blade, parameters, 4);
+  return parameters;
+}
+
+TetMesh slab_of_10800() { return block_of_nodes(60, 60, 3, Vec3(0.12, 0.12, 0.01)); }
+
+void bench_block(BenchResult& r, const StepTimer& timer, TetMesh mesh, double blade, double deepest, bool rivals) {
+  BrainBlock block(std::move(mesh), run_time(1e-3 * r.dt_ms), blade, spread_over_6_mm(), 4);
   r.nodes = block.fem.mesh().n_nodes();
-  std::vector<double> contact, solve, iterations, residual;
+  std::vector<double> contact, solve, whole, processor, iterations, residual;
   int k = 0;
   timer(
-      r, [&] { block.step(push_at(1e-3 * r.dt_ms * ++k, deepest)); },
+      r,
+      [&] {
+        const double begin = processor_ms();
+        block.step(push_at(1e-3 * r.dt_ms * ++k, deepest));
+        processor.push_back(processor_ms() - begin);
+      },
       [&] {
         r.contacts = std::max(r.contacts, static_cast<int>(block.contacts().size()));
         contact.push_back(block.contact_ms);
         solve.push_back(block.solve_ms);
+        whole.push_back(block.contact_ms + block.solve_ms);
         iterations.push_back(block.summary.iterations);
         residual.push_back(block.summary.relative);
       });
@@ -107,7 +142,11 @@ void bench_block(BenchResult& r, const StepTimer& timer, TetMesh mesh, double bl
               {"solve", median(solve)},
               {"iterations (number, p50)", median(iterations)},
               {"iterations (number, most)", *std::max_element(iterations.begin(), iterations.end())},
-              {"residual (relative, largest)", *std::max_element(residual.begin(), residual.end())}};
+              {"residual (relative, largest)", *std::max_element(residual.begin(), residual.end())},
+              {"processor time, p50", quantile(processor, 0.5)},
+              {"processor time, p99", quantile(processor, 0.99)},
+              {"for each 1000 points", 1e3 * median(whole) / r.nodes},
+              {"memory (MB, largest of the process so far)", peak_megabytes()}};
   if (rivals) time_rivals(block.fem, r);
 }
 
@@ -160,6 +199,12 @@ void bench_collision(BenchResult& r, const StepTimer& timer) {
 
 }  // namespace
 
+std::function<void()> pressed_block() {
+  constexpr double kStep = 10e-3;  // [s]
+  auto block = std::make_shared<BrainBlock>(slab_of_10800(), run_time(kStep), 20e-3, spread_over_6_mm(), 4);
+  return [block, k = 0]() mutable { block->step(push_at(kStep * ++k, 2e-3)); };
+}
+
 std::vector<std::pair<BenchResult, TimedBench>> brain_benches() {
   std::vector<std::pair<BenchResult, TimedBench>> list;
   const auto add = [&](const std::string& name, double dt_ms, int steps, TimedBench run) {
@@ -170,7 +215,7 @@ std::vector<std::pair<BenchResult, TimedBench>> brain_benches() {
     list.emplace_back(r, std::move(run));
   };
   add("brain-2000", 2.0, 2000, [](BenchResult& r, const StepTimer& t) { bench_block(r, t, block_of_nodes(16, 16, 8, Vec3(0.06, 0.06, 0.03)), 20e-3, 6e-3, true); });
-  add("brain-10800", 10.0, 500, [](BenchResult& r, const StepTimer& t) { bench_block(r, t, block_of_nodes(60, 60, 3, Vec3(0.12, 0.12, 0.01)), 20e-3, 2e-3, true); });
+  add("brain-10800", 10.0, 500, [](BenchResult& r, const StepTimer& t) { bench_block(r, t, slab_of_10800(), 20e-3, 2e-3, true); });
   add("brain-anatomy", 10.0, 500, [](BenchResult& r, const StepTimer& t) {
     CortexShape shape;
     shape.cells = {34, 28, 9};

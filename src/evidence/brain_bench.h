@@ -15,4 +15,7 @@ using TimedBench = std::function<void(BenchResult&, const StepTimer&)>;
 
 std::vector<std::pair<BenchResult, TimedBench>> brain_benches();
 
+/// The block of brain-10800 under its blade: each call is a step of 10 ms.
+std::function<void()> pressed_block();
+
 }  // namespace filum

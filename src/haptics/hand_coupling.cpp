@@ -11,7 +11,8 @@ void HandCoupling::release() noexcept {
   v_D_.setZero();
 }
 
-Vec3 HandCoupling::force(const Vec3& p_D, const Vec3& p_T, const Vec3& v_T, double dt) noexcept {
+/// Books what the last force spent on the way to p_D; returns the way.
+Vec3 HandCoupling::moved_to(const Vec3& p_D, double dt) noexcept {
   if (!started_) p_D_ = p_D;
   started_ = true;
   const Vec3 moved = p_D - p_D_;
@@ -19,6 +20,17 @@ Vec3 HandCoupling::force(const Vec3& p_D, const Vec3& p_T, const Vec3& v_T, doub
   const double blend = dt / (dt + 1.0 / options_.velocity_cutoff);
   v_D_ += blend * (moved / dt - v_D_);
   p_D_ = p_D;
+  return moved;
+}
+
+Vec3 HandCoupling::pass(const Vec3& wanted, const Vec3& p_D, double dt) noexcept {
+  const Vec3 moved = moved_to(p_D, dt);
+  force_ = affordable(limited(wanted, dt), moved, dt);
+  return force_;
+}
+
+Vec3 HandCoupling::force(const Vec3& p_D, const Vec3& p_T, const Vec3& v_T, double dt) noexcept {
+  const Vec3 moved = moved_to(p_D, dt);
   const Vec3 wanted = options_.stiffness * (p_T - p_D) + options_.damping * (v_T - v_D_);
   force_ = affordable(limited(wanted, dt), moved, dt);
   return force_;

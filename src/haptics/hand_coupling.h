@@ -38,6 +38,8 @@ class HandCoupling {
   /// Force on the hand [N], frame W. p_D: commanded tip [m]; p_T, v_T: simulated tip [m], [m/s]; dt [s] since
   /// the last call.
   Vec3 force(const Vec3& p_D, const Vec3& p_T, const Vec3& v_T, double dt) noexcept;
+  /// The same limits and tank for a force that is known: that of a blade which goes where the hand goes (haptics/blade_feel.h).
+  Vec3 pass(const Vec3& wanted, const Vec3& p_D, double dt) noexcept;
   /// No force, at once, and the next call starts afresh: the device or the pose is not to be trusted.
   void release() noexcept;
 
@@ -47,6 +49,7 @@ class HandCoupling {
   }  // times the tank was too empty for the force
 
  private:
+  Vec3 moved_to(const Vec3& p_D, double dt) noexcept;
   Vec3 limited(const Vec3& wanted, double dt) const noexcept;
   Vec3 affordable(const Vec3& force, const Vec3& moved, double dt) noexcept;
 

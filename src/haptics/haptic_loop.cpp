@@ -36,6 +36,14 @@ ToolStates tool_states_of(const Observation& observation, std::int64_t now_us) n
     const ToolObservation& tool = observation.tools[i];
     states.tools[i] = {tool.X_WT.p, tool.v_W, tool.f_T_W, true};
   }
+  for (std::size_t i = 0; i < observation.brain.blades.size() && static_cast<int>(i) < observation.brain.n_blades; ++i) {
+    const BladeObservation& blade = observation.brain.blades[i];
+    states.tools[i].blade = true;
+    states.tools[i].p_WT = observation.tools[i].X_WD.p;
+    states.tools[i].parked = blade.parked;
+    states.tools[i].torque_W = blade.torque_W;
+    states.tools[i].stiffness_W = blade.stiffness_W;
+  }
   return states;
 }
 
@@ -94,23 +102,34 @@ void HapticLoop::render(const Inputs& inputs, std::int64_t now_us) noexcept {
     const bool clutched = (input.buttons & 1u) != 0;
     now_.valid[i] = input.valid;
     now_.scene_force[i] = world_live && tool.present ? tool.f_T_W : Vec3(Vec3::Zero());
-    if (!input.valid || clutched || !world_live || !tool.present) {
+    now_.scene_torque[i] = world_live && tool.present ? tool.torque_W : Vec3(Vec3::Zero());
+    if (!input.valid || clutched || !world_live || !tool.present || tool.parked) {
       couplings_[i].release();
       contacts_[i].release();
+      blades_[i].release();
       now_.hand_force[i].setZero();
       continue;
     }
-    // The world runs at half this rate: between its states a local model of what the tool touches goes on.
-    if (states.time_us != seen_states_us_ || !contacts_[i].known())
-      contacts_[i].update(tool.p_WT, tool.v_W, tool.f_T_W, input.X_WD.p, states.time_us);
-    const Vec3 felt = couplings_[i].force(input.X_WD.p, contacts_[i].tip(input.X_WD.p, now_us), tool.v_W, dt);
-    now_.hand_force[i] = options_.scale.factor * felt;
+    now_.hand_force[i] = options_.scale.factor * felt(i, input, now_us, dt, states);
   }
   seen_states_us_ = states.time_us;
   HandForces forces;
   forces.force = now_.hand_force;
+  forces.torque = now_.scene_torque;
   forces.valid = now_.valid;
   for (const auto& device : devices_) device->render(now_us, forces);
+}
+
+/// The world runs at half this rate or less: between its states a local model of what the tool touches goes on.
+Vec3 HapticLoop::felt(std::size_t i, const ToolInput& input, std::int64_t now_us, double dt, const ToolStates& states) noexcept {
+  const ToolStates::Tool& tool = states.tools[i];
+  const Vec3& hand = input.X_WD.p;
+  if (tool.blade) {
+    if (states.time_us != seen_states_us_ || !blades_[i].known()) blades_[i].update(tool.p_WT, tool.f_T_W, tool.stiffness_W, hand, states.time_us);
+    return couplings_[i].pass(blades_[i].force(hand, now_us), hand, dt);
+  }
+  if (states.time_us != seen_states_us_ || !contacts_[i].known()) contacts_[i].update(tool.p_WT, tool.v_W, tool.f_T_W, hand, states.time_us);
+  return couplings_[i].force(hand, contacts_[i].tip(hand, now_us), tool.v_W, dt);
 }
 
 void HapticLoop::publish(std::int64_t now_us) noexcept {

@@ -13,6 +13,7 @@
 
 #include "base/exchange.h"
 #include "devices/device.h"
+#include "haptics/blade_feel.h"
 #include "haptics/hand_coupling.h"
 #include "haptics/input_merge.h"
 #include "haptics/local_contact.h"
@@ -29,6 +30,10 @@ struct ToolStates {
     Vec3 v_W = Vec3::Zero();    // [m/s]
     Vec3 f_T_W = Vec3::Zero();  // [N], force of the scene on the tool
     bool present = false;
+    bool blade = false;   // goes where the hand goes: the hand feels the scene's own force; p_WT is then where the hand was
+    bool parked = false;  // on an arm: the hand feels nothing
+    Vec3 torque_W = Vec3::Zero();     // [N m], of the scene on a blade about its tip
+    Mat3 stiffness_W = Mat3::Zero();  // [N/m], of what a blade touches
   };
   std::array<Tool, kMaxTools> tools;
   std::int64_t time_us = -1;  // [us], of the clock that tick() is given; -1 never
@@ -43,6 +48,7 @@ struct HapticReport {
                                          Vec3::Zero()};  // [N], to render, frame W
   std::array<Vec3, kMaxTools> scene_force{Vec3::Zero(), Vec3::Zero(),
                                           Vec3::Zero()};  // [N], of the scene on the tool, frame W
+  std::array<Vec3, kMaxTools> scene_torque{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // [N m], about the tip: blades
   std::array<bool, kMaxTools> valid{};                    // the hand is live
   int n_devices = 0;
   std::array<DeviceHealth, InputMerge::kMaxSources> devices;
@@ -89,6 +95,7 @@ class HapticLoop {
  private:
   void poll_devices(std::int64_t now_us) noexcept;
   void render(const Inputs& inputs, std::int64_t now_us) noexcept;
+  Vec3 felt(std::size_t i, const ToolInput& input, std::int64_t now_us, double dt, const ToolStates& states) noexcept;
   void publish(std::int64_t now_us) noexcept;
   void run(std::int64_t epoch_us) noexcept;
 
@@ -98,6 +105,7 @@ class HapticLoop {
   InputMerge merge_;
   std::array<HandCoupling, kMaxTools> couplings_;
   std::array<LocalContact, kMaxTools> contacts_;
+  std::array<BladeFeel, kMaxTools> blades_;
   std::int64_t seen_states_us_ = -1;  // [us], of the tool states seen last
   PeriodStats periods_;
   HapticReport now_;

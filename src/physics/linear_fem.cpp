@@ -16,6 +16,14 @@ Lame lame(const FemMaterial& m) {
   return {m.young * m.poisson / ((1.0 + m.poisson) * (1.0 - 2.0 * m.poisson)), mu};
 }
 
+using Corners = Eigen::Matrix<double, 3, 4>;
+
+/// Of the displacements d [m] of an element's corners.
+Mat3 stress_of(const Corners& b, const Corners& d, const Lame& l) {
+  const Mat3 gradient = d * b.transpose(), strain = 0.5 * (gradient + gradient.transpose());
+  return l.lambda * strain.trace() * Mat3::Identity() + 2.0 * l.mu * strain;
+}
+
 /// Nodes each node shares an element with; two rings of them where pressures are averaged.
 std::vector<std::vector<int>> neighbours(const TetMesh& m, bool two_rings) {
   std::vector<std::vector<int>> near(static_cast<std::size_t>(m.n_nodes()));
@@ -55,10 +63,10 @@ void check_material(const FemMaterial& m, const std::string& file) {
 
 /// The systems of a step, in the precision asked for, and of rest.
 struct LinearFem::Solvers {
-  FemSystem<float> narrow;
+  FemSystem<float> narrow, response;
   FemSystem<double> step, rest;
   bool rest_is_set = false;
-  explicit Solvers(const BlockMatrix& K) : narrow(K), step(K), rest(K) {}
+  explicit Solvers(const BlockMatrix& K) : narrow(K), response(K), step(K), rest(K) {}
 };
 
 LinearFem::LinearFem(TetMesh mesh, std::vector<FemMaterial> regions, const FemOptions& options, const std::string& file)
@@ -154,6 +162,7 @@ void LinearFem::set_systems() {
   if (options_.single_precision) solvers_->narrow.set(scale, inertia, held_);
   else solvers_->step.set(scale, inertia, held_);
   solvers_->rest_is_set = false;
+  if (responds_) prepare_response();
 }
 
 void LinearFem::hold(std::span<const int> nodes) {
@@ -163,7 +172,7 @@ void LinearFem::hold(std::span<const int> nodes) {
 
 FemState LinearFem::rest() const {
   FemState s;
-  s.u = s.v = s.a = Points::Zero(3, mesh_.n_nodes());
+  s.u = s.v = s.a = s.du = Points::Zero(3, mesh_.n_nodes());
   s.w = Points::Zero(3, static_cast<Eigen::Index>(options_.relaxation.size()) * mesh_.n_nodes());
   s.removed.assign(static_cast<std::size_t>(mesh_.n_tets()), 0);
   return s;
@@ -172,8 +181,8 @@ FemState LinearFem::rest() const {
 FemSummary LinearFem::solve(FemState& s, std::span<MovedNode> moved, bool dynamic) noexcept {
   for (MovedNode& m : moved) m.target -= s.u.col(m.node);  // targets of the change
   const FemSummary summary = !dynamic                    ? solvers_->rest.solve(right_, change_, moved, options_.solver)
-                             : options_.single_precision ? solvers_->narrow.solve(right_, change_, moved, options_.solver)
-                                                         : solvers_->step.solve(right_, change_, moved, options_.solver);
+                             : options_.single_precision ? solvers_->narrow.solve(right_, &work_, change_, moved, options_.solver)
+                                                         : solvers_->step.solve(right_, &work_, change_, moved, options_.solver);
   for (MovedNode& m : moved) m.target += s.u.col(m.node);
   return summary;
 }
@@ -186,17 +195,14 @@ FemSummary LinearFem::step(FemState& s, std::span<MovedNode> moved, const Points
     w += (1.0 - std::exp(-dt / options_.relaxation[k].time)) * (s.u - w);
     work_.topRows<3>() += options_.relaxation[k].share * w;
   }
-  if (options_.single_precision) solvers_->narrow.stiffness_times(work_, right_);
-  else solvers_->step.stiffness_times(work_, right_);
-  for (const MovedNode& m : moved)
-    if (held_[static_cast<std::size_t>(m.node)]) right_.col(m.node).head<3>() = K_.row_times(m.node, work_);
   for (int i = 0; i < mesh_.n_nodes(); ++i) {
-    right_.col(i).head<3>() += mass_[i] * ((4.0 / dt + alpha) * s.v.col(i) + s.a.col(i));
+    right_.col(i).head<3>() = mass_[i] * ((4.0 / dt + alpha) * s.v.col(i) + s.a.col(i));
     if (loads != nullptr) right_.col(i).head<3>() += loads->col(i);
-    change_.col(i).head<3>() = dt * s.v.col(i);  // warm start: as it went on the step before
+    change_.col(i).head<3>() = s.du.col(i);  // warm start: as it went in the step before; v would bring the rule's own ringing along
   }
   const FemSummary summary = solve(s, moved, true);
   if (!summary.sound) {
+    s.du.setZero();
     s.v.setZero();
     s.a.setZero();
     for (MovedNode& m : moved) m.force.setZero();
@@ -205,6 +211,7 @@ FemSummary LinearFem::step(FemState& s, std::span<MovedNode> moved, const Points
   for (int i = 0; i < mesh_.n_nodes(); ++i) {
     const Vec3 du = change_.col(i).head<3>(), v = s.v.col(i);
     s.u.col(i) += du;
+    s.du.col(i) = du;
     s.v.col(i) = 2.0 / dt * du - v;
     s.a.col(i) = 4.0 / (dt * dt) * du - 4.0 / dt * v - s.a.col(i);
   }
@@ -228,9 +235,23 @@ FemSummary LinearFem::equilibrium(FemState& s, std::span<MovedNode> moved, const
   change_.setZero();
   const FemSummary summary = solve(s, moved, false);
   if (summary.sound) s.u += change_.topRows<3>();
+  s.du.setZero();
   s.v.setZero();
   s.a.setZero();
   return summary;
+}
+
+void LinearFem::prepare_response() {
+  solvers_->response.set(1.0, Eigen::VectorXd::Zero(mesh_.n_nodes()), held_);
+  responds_ = true;
+}
+
+FemSummary LinearFem::respond(std::span<MovedNode> moved, Columns4& x) noexcept {
+  FemSolverOptions few;
+  few.relative = 1e-2;
+  few.max_iterations = 8;
+  work_.setZero();
+  return solvers_->response.solve(work_, x, moved, few);
 }
 
 bool LinearFem::remove_element(FemState& s, int e) {
@@ -265,13 +286,20 @@ Points LinearFem::elastic_force(const Points& u) const {
   return y.topRows<3>();
 }
 
-Mat3 LinearFem::stress(const Points& u, int e) const {
-  const Gradients g = gradients(e);
-  Mat3 gradient = Mat3::Zero();
-  for (int c = 0; c < 4; ++c) gradient += u.col(mesh_.tets[static_cast<std::size_t>(e)][static_cast<std::size_t>(c)]) * g.b.col(c).transpose();
-  const Mat3 strain = 0.5 * (gradient + gradient.transpose());
-  const auto [lambda, mu] = lame(regions_[static_cast<std::size_t>(mesh_.region_of(e))]);
-  return lambda * strain.trace() * Mat3::Identity() + 2.0 * mu * strain;
+Mat3 LinearFem::stress(const Eigen::Ref<const Points>& u, int e) const {
+  Corners d;
+  for (int c = 0; c < 4; ++c) d.col(c) = u.col(mesh_.tets[static_cast<std::size_t>(e)][static_cast<std::size_t>(c)]);
+  return stress_of(gradients(e).b, d, lame(regions_[static_cast<std::size_t>(mesh_.region_of(e))]));
+}
+
+Mat3 LinearFem::relaxed_stress(const FemState& s, int e) const {
+  Corners d;
+  for (int c = 0; c < 4; ++c) {
+    const int i = mesh_.tets[static_cast<std::size_t>(e)][static_cast<std::size_t>(c)];
+    d.col(c) = s.u.col(i);
+    for (std::size_t k = 0; k < options_.relaxation.size(); ++k) d.col(c) -= options_.relaxation[k].share * s.w.col(static_cast<Eigen::Index>(k) * s.u.cols() + i);
+  }
+  return stress_of(gradients(e).b, d, lame(regions_[static_cast<std::size_t>(mesh_.region_of(e))]));
 }
 
 double LinearFem::nodal_stiffness(int node) const noexcept { return K_.diagonal(node).trace() / 3.0; }

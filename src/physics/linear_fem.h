@@ -59,6 +59,7 @@ struct FemOptions {
 
 struct FemState {
   Points u, v, a;               // [m], [m/s], [m/s2], 3 x n
+  Points du;                    // [m], 3 x n, change of u in the last step: where the next one begins to look
   Points w;                     // [m], 3 x (n terms), relaxed displacements, term by term; 3 x 0 where nothing relaxes
   std::vector<char> removed;    // of each element
 };
@@ -80,6 +81,12 @@ class LinearFem {
   /// Rest under loads and moved nodes: K u = f. At least three nodes must be held or prescribed.
   FemSummary equilibrium(FemState& s, std::span<MovedNode> moved, const Points* loads = nullptr) noexcept;
 
+  /// How the tissue answers movers at rest, from nothing but their targets: K x = 0 where nobody pulls, a few iterations on from
+  /// the x given. What it costs the movers (their `force`) is the local stiffness that a hand feels between two steps.
+  FemSummary respond(std::span<MovedNode> moved, Columns4& x) noexcept;
+  /// Must have been called before respond(), and after hold().
+  void prepare_response();
+
   /// Takes an element out of the tissue; its mass stays with its nodes. False if it is out already.
   bool remove_element(FemState& s, int e);
   /// Makes the matrices fit the elements a restored state has.
@@ -87,7 +94,8 @@ class LinearFem {
 
   double energy(const FemState& s) const;      // [J], kinetic and elastic
   Points elastic_force(const Points& u) const; // [N], K u
-  Mat3 stress(const Points& u, int e) const;   // [Pa], of the plain element
+  Mat3 stress(const Eigen::Ref<const Points>& u, int e) const;   // [Pa], of the plain element
+  Mat3 relaxed_stress(const FemState& s, int e) const;  // [Pa], of what has not relaxed
   double nodal_stiffness(int node) const noexcept;  // [N/m], a third of the trace of K_ii
 
   const TetMesh& mesh() const noexcept { return mesh_; }
@@ -118,6 +126,7 @@ class LinearFem {
   std::vector<char> held_, removed_;
   Columns4 right_, change_, work_;
   std::unique_ptr<Solvers> solvers_;
+  bool responds_ = false;
 };
 
 }  // namespace filum

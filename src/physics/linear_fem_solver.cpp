@@ -2,11 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace filum {
 namespace {
 
 constexpr double kNothing = 1e-15;  // [N], forces below this are rest
+constexpr int kLook = 8;            // iterations of conjugate gradients, of which after the second the true residual is looked at in any case
+
+/// Of the square of the residual: what conjugate gradients in these numbers gain before they had better begin anew.
+template <class T>
+constexpr double kGain = sizeof(T) == 4 ? 1e-11 : 1e-26;
 
 /// A block that can be divided by: not that of a node that has lost its elements.
 bool regular(const Mat3& m) noexcept {
@@ -128,18 +134,31 @@ void FemSystem<T>::set(double scale, const Eigen::VectorXd& mass, const std::vec
   moved_.reserve(node_of_.size());
 }
 
+/// b - A g, without movers.
 template <class T>
-void FemSystem<T>::gather(const Columns4& b, const Columns4& u) noexcept {
+template <class Number>
+void FemSystem<T>::gather(const Columns4& f, const Columns4* w, const Columns4& guess, std::vector<Number>& y) noexcept {
   for (std::size_t p = 0; p < node_of_.size(); ++p) {
-    if (node_of_[p] < 0) continue;
-    into(&b_[4 * p]) = root_inverse_[p] * b.col(node_of_[p]).template head<3>();
-    into(&u_[4 * p]) = root_[p].transpose() * u.col(node_of_[p]).template head<3>();
+    const int i = node_of_[p];
+    if (i < 0) continue;
+    Vec3 x = -scale_ * guess.col(i).template head<3>();
+    if (w != nullptr) x += w->col(i).template head<3>();
+    const Vec3 to = root_[p].transpose() * x;
+    for (int c = 0; c < 3; ++c) y[4 * p + static_cast<std::size_t>(c)] = static_cast<Number>(to[c]);
+    into(&b_[4 * p]) = root_inverse_[p] * (f.col(i).template head<3>() - mass_[i] * (guess.col(i).template head<3>() + x / scale_));
+  }
+  Vec3 rows[kGroup];
+  for (std::size_t p = 0; p < node_of_.size(); ++p) {
+    if (p % kGroup == 0) product(static_cast<int>(p) / kGroup, y.data(), rows);
+    if (node_of_[p] >= 0) into(&b_[4 * p]) += rows[p % kGroup] / scale_;
   }
 }
 
+/// Takes in the movers, whose targets are counted from the guess; true if any node is prescribed.
 template <class T>
-void FemSystem<T>::place(std::span<const MovedNode> moved, Columns4& u) noexcept {
+bool FemSystem<T>::place(std::span<const MovedNode> moved, const Columns4& guess) noexcept {
   moved_.clear();
+  bool prescribed = false;
   for (const MovedNode& m : moved) {
     const int at = position_of_[static_cast<std::size_t>(m.node)];
     if (at < 0) continue;
@@ -150,21 +169,22 @@ void FemSystem<T>::place(std::span<const MovedNode> moved, Columns4& u) noexcept
       moved_.back().position = at;
     }
     Moved& s = moved_[static_cast<std::size_t>(special_[p])];
+    const Vec3 way = m.target - guess.col(m.node).template head<3>();
     if (m.prescribed) {
-      s.prescribed = true;
-      u.col(m.node).template head<3>() = m.target;
-      into(&u_[4 * p]) = root_[p].transpose() * m.target;
+      s.prescribed = prescribed = true;
+      into(&u_[4 * p]) = root_[p].transpose() * way;
     } else {
       const Mat3 scaled = root_inverse_[p] * m.stiffness * root_inverse_[p].transpose();
       s.spring += scaled;
       s.block += scaled;
-      const Vec3 pull = root_inverse_[p] * (m.stiffness * m.target);
+      const Vec3 pull = root_inverse_[p] * (m.stiffness * way);
       s.pull += pull;
       into(&b_[4 * p]) += pull;
     }
     s.diagonal = packed<T>(s.block);
     s.inverse = packed<T>(s.prescribed ? Mat3(Mat3::Zero()) : Mat3(s.block.inverse()));
   }
+  return prescribed;
 }
 
 template <class T>
@@ -173,47 +193,46 @@ void FemSystem<T>::lift() noexcept {
 }
 
 template <class T>
-void FemSystem<T>::product(int g, const double* x, Vec3* rows) const noexcept {
-  Four<double> low[kGroup], high[kGroup];
+template <class Number>
+void FemSystem<T>::product(int g, const Number* x, Vec3* rows) const noexcept {
+  Four<Number> low[kGroup], high[kGroup];
   low_.times(g, x, low);
   high_.times(groups() - 1 - g, x, high);
   for (int l = 0; l < kGroup; ++l) {
-    const Four<double> sum = low[l] + high[l] + load_four(x + 4 * static_cast<std::ptrdiff_t>(kGroup * g + l));
-    rows[l] = {sum[0], sum[1], sum[2]};
+    const Four<Number> sum = low[l] + high[l] + load_four(x + 4 * static_cast<std::ptrdiff_t>(kGroup * g + l));
+    rows[l] = {static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2])};
   }
 }
 
-/// |b| and the forces that the movers would give at the first guess.
+/// |f| and the forces that the movers would give at the first guess.
 template <class T>
-double FemSystem<T>::scale_of() const noexcept {
+double FemSystem<T>::scale_of(const Columns4& f) const noexcept {
   double sum = 0.0;
+  for (std::size_t p = 0; p < node_of_.size(); ++p)
+    if (node_of_[p] >= 0) sum += f.col(node_of_[p]).squaredNorm();
   Vec3 rows[kGroup];
-  for (std::size_t p = 0; p < node_of_.size(); ++p) {
-    Vec3 b = three(&b_[4 * p]);
-    if (const int s = special_[p]; s >= 0) {
-      const Moved& m = moved_[static_cast<std::size_t>(s)];
-      b -= m.pull;
-      product(static_cast<int>(p) / kGroup, u_.data(), rows);
-      Vec3 force = b - rows[p % kGroup];
-      if (!m.prescribed) {  // what the mover gives once this node alone has followed it
-        const Vec3 wanted = m.pull - m.spring * three(&u_[4 * p]);
-        force += wanted - m.spring * (m.block.inverse() * wanted);
-      }
-      sum += (root_[p] * force).squaredNorm();
+  for (const Moved& m : moved_) {
+    const auto p = static_cast<std::size_t>(m.position);
+    Vec3 force = three(&b_[4 * p]) - m.pull;
+    if (m.prescribed) {
+      product(m.position / kGroup, u_.data(), rows);
+      force -= rows[p % kGroup];
+    } else {  // what the mover gives once this node alone has followed it
+      force += m.pull - m.spring * (m.block.inverse() * m.pull);
     }
-    sum += (root_[p] * b).squaredNorm();
+    sum += (root_[p] * force).squaredNorm();
   }
   return std::sqrt(sum);
 }
 
-/// Residual into r_, scaled; the norm of the true one over the nodes that are not prescribed.
+/// Residual into r_, scaled; the norm of the true one over the nodes that are not prescribed. `moves`: the change is not zero.
 template <class T>
-double FemSystem<T>::residual(double& largest) noexcept {
+double FemSystem<T>::residual(bool moves, double& largest) noexcept {
   double sum = 0.0;
   largest = 0.0;
-  Vec3 rows[kGroup];
+  Vec3 rows[kGroup] = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
   for (std::size_t p = 0; p < node_of_.size(); ++p) {
-    if (p % kGroup == 0) product(static_cast<int>(p) / kGroup, u_.data(), rows);
+    if (moves && p % kGroup == 0) product(static_cast<int>(p) / kGroup, u_.data(), rows);
     Vec3 r = three(&b_[4 * p]) - rows[p % kGroup];
     if (const int s = special_[p]; s >= 0) {
       const Moved& m = moved_[static_cast<std::size_t>(s)];
@@ -254,12 +273,12 @@ double FemSystem<T>::sweep(double w, bool back) noexcept {
 }
 
 template <class T>
-int FemSystem<T>::gauss_seidel(const FemSolverOptions& o, double scale, double& left, double& largest) noexcept {
+int FemSystem<T>::gauss_seidel(const FemSolverOptions& o, double enough, double& left, double& largest) noexcept {
   int k = 0;
-  while (k < o.max_iterations && left > o.relative * scale) {
+  while (k < o.max_iterations && left > enough) {
     ++k;
     const double seen = sweep(o.relaxation, o.symmetric && k % 2 == 0);
-    if (!(seen > 2.0 * o.relative * scale) || k == o.max_iterations) left = residual(largest);
+    if (!(seen > 2.0 * enough) || k == o.max_iterations) left = residual(true, largest);
   }
   return k;
 }
@@ -378,37 +397,44 @@ double FemSystem<T>::norm_of_lower() const noexcept {
 }
 
 template <class T>
-int FemSystem<T>::conjugate_gradients(const FemSolverOptions& o, double scale, double& left, double& largest) noexcept {
+int FemSystem<T>::conjugate_gradients(const FemSolverOptions& o, double enough, double& left, double& largest) noexcept {
   int k = 0;
-  while (k < o.max_iterations && left > o.relative * scale) {  // again if the true residual says so
+  while (k < o.max_iterations && left > enough) {  // again if the true residual says so
     forward();
     double rho = begin_direction();
     if (!(rho > 0.0)) break;
-    const double start = left, per_rho = left / std::sqrt(rho);  // true residual over its norm in M^-1: about constant
+    const double start = left, first = rho;
+    double per_rho = std::numeric_limits<double>::infinity();  // true residual over its norm in M^-1: about constant, once stiff movers have had their way
     std::fill(x_.begin(), x_.end(), T(0));
     while (k < o.max_iterations) {
       ++k;
       const double next = advance(rho / apply());
       if (!std::isfinite(next) || !(next > 0.0)) break;
-      if (per_rho * std::sqrt(next) < 2.0 * o.relative * scale && norm_of_lower() < o.relative * scale) break;
+      if (k % kLook == 2 || per_rho * std::sqrt(next) < 1.1 * enough) {
+        const double true_norm = norm_of_lower();
+        if (true_norm < enough) break;
+        per_rho = true_norm / std::sqrt(next);
+      }
+      if (next < kGain<T> * first) break;
       turn(next / rho);
       rho = next;
     }
     backward(x_.data(), t_.data());
     for (std::size_t c = 0; c < u_.size(); ++c) u_[c] += static_cast<double>(t_[c]);
-    left = residual(largest);
+    left = residual(true, largest);
     if (!(left < 0.5 * start)) break;  // as far as the numbers reach
   }
   return k;
 }
 
 template <class T>
-void FemSystem<T>::forces(const Columns4& b, const Columns4& u, std::span<MovedNode> moved) const noexcept {
+void FemSystem<T>::forces(const Columns4& f, const Columns4* w, const Columns4& u, std::span<MovedNode> moved) const noexcept {
   Vec3 rows[kGroup];
   for (MovedNode& m : moved) {
     const int at = position_of_[static_cast<std::size_t>(m.node)];
     if (at < 0) {
-      m.force = scale_ * K_.row_times(m.node, u) + mass_[m.node] * u.col(m.node).template head<3>() - b.col(m.node).template head<3>();
+      m.force = scale_ * K_.row_times(m.node, u) + mass_[m.node] * u.col(m.node).template head<3>() - f.col(m.node).template head<3>();
+      if (w != nullptr) m.force -= K_.row_times(m.node, *w);
     } else if (m.prescribed) {
       const auto p = static_cast<std::size_t>(at);
       product(at / kGroup, u_.data(), rows);
@@ -420,39 +446,32 @@ void FemSystem<T>::forces(const Columns4& b, const Columns4& u, std::span<MovedN
 }
 
 template <class T>
-FemSummary FemSystem<T>::solve(const Columns4& b, Columns4& u, std::span<MovedNode> moved, const FemSolverOptions& o) noexcept {
+FemSummary FemSystem<T>::solve(const Columns4& f, const Columns4* w, Columns4& u, std::span<MovedNode> moved, const FemSolverOptions& o) noexcept {
+  constexpr double kFloat = 1e-5;  // relative residuals from here up are told by float
   FemSummary s;
-  gather(b, u);
-  place(moved, u);
-  const double scale = scale_of();
-  double left = residual(s.residual);
+  if (o.relative >= kFloat) gather(f, w, u, t_);
+  else gather(f, w, u, u_);
+  std::fill(u_.begin(), u_.end(), 0.0);
+  const bool prescribed = place(moved, u);
+  const double scale = scale_of(f);
+  double left = residual(prescribed, s.residual);
+  const double enough = std::max(o.relative * scale, o.absolute);
+  s.first = scale > kNothing ? left / scale : 0.0;
   if (scale > kNothing)
-    s.iterations = o.method == FemSolverOptions::Method::gauss_seidel ? gauss_seidel(o, scale, left, s.residual) : conjugate_gradients(o, scale, left, s.residual);
+    s.iterations = o.method == FemSolverOptions::Method::gauss_seidel ? gauss_seidel(o, enough, left, s.residual) : conjugate_gradients(o, enough, left, s.residual);
   for (int i = 0; i < K_.n(); ++i) {
     const int at = position_of_[static_cast<std::size_t>(i)];
     if (at < 0) u.col(i).setZero();
-    else u.col(i).template head<3>() = root_inverse_[static_cast<std::size_t>(at)].transpose() * three(&u_[4 * static_cast<std::size_t>(at)]);
+    else u.col(i).template head<3>() += root_inverse_[static_cast<std::size_t>(at)].transpose() * three(&u_[4 * static_cast<std::size_t>(at)]);
   }
   for (const MovedNode& m : moved)
     if (m.prescribed && position_of_[static_cast<std::size_t>(m.node)] >= 0) u.col(m.node).template head<3>() = m.target;
-  forces(b, u, moved);
+  forces(f, w, u, moved);
   lift();
   s.relative = scale > kNothing ? left / scale : 0.0;
-  s.converged = s.relative <= 1.01 * o.relative;
+  s.converged = !(scale > kNothing) || left <= 1.01 * enough;
   s.sound = std::isfinite(left) && u.allFinite();
   return s;
-}
-
-template <class T>
-void FemSystem<T>::stiffness_times(const Columns4& x, Columns4& y) noexcept {
-  y.setZero();
-  Vec3 rows[kGroup];
-  for (std::size_t p = 0; p < node_of_.size(); ++p)
-    if (node_of_[p] >= 0) into(&u_[4 * p]) = root_[p].transpose() * x.col(node_of_[p]).template head<3>();
-  for (std::size_t p = 0; p < node_of_.size(); ++p) {
-    if (p % kGroup == 0) product(static_cast<int>(p) / kGroup, u_.data(), rows);
-    if (const int i = node_of_[p]; i >= 0) y.col(i).template head<3>() = (root_[p] * rows[p % kGroup] - mass_[i] * x.col(i).template head<3>()) / scale_;
-  }
 }
 
 template class FemSystem<double>;

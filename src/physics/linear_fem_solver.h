@@ -13,8 +13,10 @@
 // stretches that are dealt out in turn, since a sweep whose every row waits for the row before is slow (linear_fem_rows.h).
 // The matrix and the vectors of conjugate gradients are of type T; the residual is summed in double, and iterations begin
 // anew from it until it is small enough, so that float costs sweeps, not accuracy.
-// Stops when |b - A u| over the nodes that are not prescribed falls below `relative` times |b| + |reactions|, |b| over the nodes that
-// are not held.  Tests: linear_fem_test (against Cholesky).
+// Only the change from the first guess g is solved for: its right side b - A g is one product, also where b itself is a load and a
+// product, b = f + K w, as in a step: b - A g = f - m g + K (w - s g).
+// Stops when |b - A u| over the nodes that are not prescribed falls below `relative` times |f| + |reactions|, |f| over the nodes that
+// are not held, or below `absolute`.  Tests: linear_fem_test (against Cholesky).
 
 #include <span>
 #include <vector>
@@ -39,6 +41,7 @@ struct FemSolverOptions {
   enum class Method { gauss_seidel, conjugate_gradients };
   Method method = Method::conjugate_gradients;
   double relative = 1e-3;   // residual at which to stop
+  double absolute = 0.0;    // [N], or at which
   int max_iterations = 400;
   double relaxation = 1.0;  // of Gauss-Seidel, 0 < w < 2
   bool symmetric = false;   // Gauss-Seidel sweeps forward and back in turn
@@ -48,6 +51,7 @@ struct FemSummary {
   bool converged = false;
   bool sound = true;        // all numbers finite
   int iterations = 0;       // sweeps or iterations of conjugate gradients
+  double first = 0.0;       // relative residual of the first guess
   double relative = 0.0;    // residual reached
   double residual = 0.0;    // [N], largest unbalanced force of a node
 };
@@ -60,9 +64,9 @@ class FemSystem {
   void set(double scale, const Eigen::VectorXd& mass, const std::vector<char>& held);
 
   /// `u` holds the first guess and then the answer; zero at held nodes. Allocates nothing.
-  FemSummary solve(const Columns4& b, Columns4& u, std::span<MovedNode> moved, const FemSolverOptions& options) noexcept;
-  /// y = K x at the nodes that are not held, 0 at the others, where x must be zero, too.
-  void stiffness_times(const Columns4& x, Columns4& y) noexcept;
+  FemSummary solve(const Columns4& f, Columns4& u, std::span<MovedNode> moved, const FemSolverOptions& options) noexcept { return solve(f, nullptr, u, moved, options); }
+  /// The same with f + K w on the right side; w zero at held nodes that nobody moves.
+  FemSummary solve(const Columns4& f, const Columns4* w, Columns4& u, std::span<MovedNode> moved, const FemSolverOptions& options) noexcept;
 
  private:
   /// The diagonal of a moved node, scaled, by columns; `inverse` 0 where it is prescribed.
@@ -76,17 +80,19 @@ class FemSystem {
   void order(const std::vector<char>& held);
   bool deal(const std::vector<int>& list, int streams);
   void fill();
-  void gather(const Columns4& b, const Columns4& u) noexcept;
-  void place(std::span<const MovedNode> moved, Columns4& u) noexcept;
+  template <class Number>
+  void gather(const Columns4& f, const Columns4* w, const Columns4& guess, std::vector<Number>& y) noexcept;
+  bool place(std::span<const MovedNode> moved, const Columns4& guess) noexcept;
   void lift() noexcept;
-  double scale_of() const noexcept;
+  double scale_of(const Columns4& f) const noexcept;
   static constexpr int kGroup = TriangleRows<T>::kGroup;
   int groups() const noexcept { return static_cast<int>(node_of_.size()) / kGroup; }
-  void product(int group, const double* x, Vec3* rows) const noexcept;  // of the scaled matrix without movers
-  double residual(double& largest) noexcept;
+  template <class Number>
+  void product(int group, const Number* x, Vec3* rows) const noexcept;  // of the scaled matrix without movers
+  double residual(bool moves, double& largest) noexcept;
   double sweep(double w, bool back) noexcept;
-  int gauss_seidel(const FemSolverOptions& o, double scale, double& left, double& largest) noexcept;
-  int conjugate_gradients(const FemSolverOptions& o, double scale, double& left, double& largest) noexcept;
+  int gauss_seidel(const FemSolverOptions& o, double enough, double& left, double& largest) noexcept;
+  int conjugate_gradients(const FemSolverOptions& o, double enough, double& left, double& largest) noexcept;
   void forward() noexcept;                             // r <- (D+L)^-1 r
   double begin_direction() noexcept;                   // p = D r
   void backward(const T* from, T* to) const noexcept;  // (D+U) to = from
@@ -96,7 +102,7 @@ class FemSystem {
   double norm_of_lower() const noexcept;               // |(D+L) r|, of the unscaled residual
   void times_diagonal(std::size_t position, Four<T>& v) const noexcept;
   void over_diagonal(std::size_t position, Four<T>& v) const noexcept;
-  void forces(const Columns4& b, const Columns4& u, std::span<MovedNode> moved) const noexcept;
+  void forces(const Columns4& f, const Columns4* w, const Columns4& u, std::span<MovedNode> moved) const noexcept;
 
   const BlockMatrix& K_;
   double scale_ = 1.0;
@@ -106,7 +112,7 @@ class FemSystem {
   std::vector<Mat3> root_, root_inverse_;   // R_i of each position
   std::vector<int> special_;                // position -> index in moved_, -1 none
   std::vector<Moved> moved_;
-  std::vector<double> b_, u_;               // scaled, four numbers a position
+  std::vector<double> b_, u_;               // scaled, four numbers a position: right side of the change, and the change
   std::vector<T> r_, p_, q_, t_, x_;
 };
 

@@ -42,6 +42,37 @@ TrianglePoint closest_in(const RigidSurface& s, int t, const Vec3& q) {
   return closest_on_triangle(q, s.vertices.col(c[0]), s.vertices.col(c[1]), s.vertices.col(c[2]));
 }
 
+/// Of every triangle; balls about blocks and triangles spare most of them.
+int nearest_triangle(const RigidSurface& s, const Vec3& q) {
+  int nearest = 0;
+  double least = std::numeric_limits<double>::infinity(), reach = least;  // squared distance of the nearest so far, distance
+  const auto look = [&](std::size_t block) {
+    const std::size_t first = block * RigidSurface::kBlock, last = std::min(s.triangles.size(), first + RigidSurface::kBlock);
+    for (std::size_t t = first; t < last; ++t) {
+      const double far = s.radii[t] + reach;
+      if ((s.centres[t] - q).squaredNorm() >= far * far) continue;
+      const double d = (closest_in(s, static_cast<int>(t), q).point - q).squaredNorm();
+      if (d >= least) continue;
+      least = d;
+      reach = std::sqrt(d);
+      nearest = static_cast<int>(t);
+    }
+  };
+  std::size_t start = 0;
+  double near = least;
+  for (std::size_t b = 0; b < s.block_centres.size(); ++b)
+    if (const double d = (s.block_centres[b] - q).squaredNorm(); d < near) {
+      near = d;
+      start = b;
+    }
+  look(start);
+  for (std::size_t b = 0; b < s.block_centres.size(); ++b) {
+    const double far = s.block_radii[b] + reach;
+    if (b != start && (s.block_centres[b] - q).squaredNorm() < far * far) look(b);
+  }
+  return nearest;
+}
+
 }  // namespace
 
 void check_blade(const BladeShape& b, const std::string& file) {
@@ -76,6 +107,15 @@ RigidSurface rigid_surface(Points vertices, std::vector<Triangle> triangles) {
       s.neighbours[static_cast<std::size_t>(at->second.first)][static_cast<std::size_t>(at->second.second)] = t;
     }
   }
+  for (std::size_t first = 0; first < s.triangles.size(); first += RigidSurface::kBlock) {
+    const std::size_t last = std::min(s.triangles.size(), first + RigidSurface::kBlock);
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t t = first; t < last; ++t) middle += s.centres[t] / static_cast<double>(last - first);
+    double radius = 0.0;
+    for (std::size_t t = first; t < last; ++t) radius = std::max(radius, (s.centres[t] - middle).norm() + s.radii[t]);
+    s.block_centres.push_back(middle);
+    s.block_radii.push_back(radius);
+  }
   s.low = s.vertices.rowwise().minCoeff();
   s.high = s.vertices.rowwise().maxCoeff();
   return s;
@@ -105,17 +145,7 @@ RigidSurface blade_surface(const BladeShape& shape, int along, int across) {
 }
 
 SurfacePoint nearest_point(const RigidSurface& s, const Vec3& q, int hint) noexcept {
-  if (hint < 0) {
-    double least = std::numeric_limits<double>::infinity();
-    for (int t = 0; t < static_cast<int>(s.triangles.size()); ++t) {
-      const double away = (s.centres[static_cast<std::size_t>(t)] - q).norm() - s.radii[static_cast<std::size_t>(t)];
-      if (away > 0.0 && away * away >= least) continue;
-      const double d = (closest_in(s, t, q).point - q).squaredNorm();
-      if (d >= least) continue;
-      least = d;
-      hint = t;
-    }
-  }
+  if (hint < 0) hint = nearest_triangle(s, q);
   TrianglePoint best = closest_in(s, hint, q);
   double least = (best.point - q).squaredNorm();
   for (int from = -1; from != hint;) {  // downhill from triangle to triangle

@@ -37,6 +37,9 @@ struct RigidSurface {
   std::vector<Vec3> normals;                    // unit, of each triangle
   std::vector<Vec3> centres;                    // [m], of balls about the triangles
   std::vector<double> radii;                    // [m]
+  static constexpr int kBlock = 8;
+  std::vector<Vec3> block_centres;              // [m], of balls about kBlock triangles after one another
+  std::vector<double> block_radii;              // [m]
   Vec3 low = Vec3::Zero(), high = Vec3::Zero(); // [m], box around it
 };
 

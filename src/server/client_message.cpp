@@ -103,12 +103,13 @@ bool is_code_character(char c) {
 }
 
 StartMessage read_start(Fields& fields) {
-  fields.only({"task", "input", "code", "take_over"});
-  StartMessage m{fields.text("task", 64), fields.text("input", 16), "", false};
+  fields.only({"task", "input", "code", "take_over", "stiffness"});
+  StartMessage m{fields.text("task", 64), fields.text("input", 16), "", false, 1.0};
   if (m.input != "pointer" && m.input != "demo" && m.input != "device") fields.fault("input", "pointer, demo or device");
   if (fields.has("code")) m.code = fields.text("code", 32);
   if (!std::all_of(m.code.begin(), m.code.end(), is_code_character)) fields.fault("code", "letters, digits, - and _ only");
   if (fields.has("take_over")) m.take_over = fields.flag("take_over");
+  if (fields.has("stiffness")) m.stiffness = fields.number("stiffness", 0.1, 10.0);
   return m;
 }
 

@@ -16,6 +16,7 @@ struct StartMessage {
   std::string input;  // "pointer" | "demo" | "device"
   std::string code;   // trainee code, may be empty; never a name
   bool take_over = false;
+  double stiffness = 1.0;  // of the brain, as a surgeon turns the dial
 };
 struct StopMessage {};
 struct TakeControlMessage {};

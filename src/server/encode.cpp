@@ -26,7 +26,8 @@ json task_info_json(const TaskInfoView& task) {
           {"title", task.title},
           {"summary", task.summary},
           {"demonstration", task.demonstration},
-          {"picture", task.name}};
+          {"picture", task.name},
+          {"dial", task.dial}};
 }
 
 json device_json(const DeviceView& d) {

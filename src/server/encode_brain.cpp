@@ -53,12 +53,14 @@ json brain_scene_json(const BrainDescription& b) {
           {"blades", blades},
           {"veins", veins},
           {"target", b.target_radius > 0.0 ? json{{"position", vector_json(b.target_W)}, {"radius", b.target_radius}} : json()},
+          {"section", {{"rest", flat(b.section_rest)}, {"triangles", flat(b.section_triangles)}}},
+          {"bone", b.bone_y < 0.0 ? json(b.bone_y) : json()},
           {"time_compression", b.time_compression}};
 }
 
 json retraction_json(const RetractionView& r) {
   if (!r.present) return nullptr;
-  return {{"pressure", r.pressure},     {"band", r.band},         {"dose", r.dose},   {"dose_band", r.dose_band}, {"loaded", r.loaded},
+  return {{"blind", r.blind},           {"pressure", r.pressure},     {"band", r.band},         {"dose", r.dose},   {"dose_band", r.dose_band}, {"loaded", r.loaded},
           {"perfusion", r.perfusion},   {"bands", r.bands},       {"dose_bands", r.dose_bands}, {"alarm", r.alarm},
           {"label", r.label},           {"version", r.version},   {"source", r.source}};
 }
@@ -82,14 +84,18 @@ std::string brain_frame_text(const BrainObservation& b) {
       append(value, row + k, 1, 1.0);
       out += std::string("\"") + kNames[k] + "\":" + value.substr(1, value.size() - 2) + ",";
     }
-    out += std::string("\"parked\":") + (blade.parked ? "true" : "false") + "}";
+    out += std::string("\"parked\":") + (blade.parked ? "true" : "false") + ",\"keeps_force\":" + (blade.keeps_force ? "true" : "false") + "}";
   }
   out += "],\"exposed\":";
   std::string exposed;
   append(exposed, &b.exposed, 1, 1.0);
   out += exposed.substr(1, exposed.size() - 2) + ",\"veins_torn\":[";
   for (std::size_t k = 0; k < b.vein_torn.size(); ++k) out += std::string(k > 0 ? "," : "") + (b.vein_torn[k] != 0 ? "1" : "0");
-  return out + "]}";
+  out += "],\"section\":{\"positions\":";
+  append(out, b.section.data(), static_cast<int>(b.section.size()), 1.0);
+  out += ",\"stress\":";
+  append(out, b.section_stress.data(), static_cast<int>(b.section_stress.size()), 1e-3);
+  return out + "}}";
 }
 
 }  // namespace filum

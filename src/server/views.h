@@ -12,6 +12,7 @@ namespace filum {
 struct TaskInfoView {
   std::string name, title, summary;
   bool demonstration = false;  // shown by the demonstrator only
+  bool dial = false;           // the stiffness of its tissue can be turned
 };
 
 struct DeviceView {
@@ -29,6 +30,7 @@ struct WarningView {
 /// Brain retraction: pressure and dose against the limits in force.
 struct RetractionView {
   bool present = false;
+  bool blind = false;                  // to be hidden from the trainee now
   double pressure = 0.0, alarm = 0.0;  // [mmHg]
   double dose = 0.0;                   // [mmHg min]
   double loaded = 0.0;                 // [s], of the patient, without a pause

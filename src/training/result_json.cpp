@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "training/pressure_map.h"
+
 namespace filum {
 namespace {
 
@@ -100,6 +102,7 @@ Json pressure_json(const PressureReport& p) {
           {"dose_unit", "mmHg min"},
           {"risk", finite(p.risk)},
           {"time_in_band", bands},
+          {"hold_peak_mmhg", mmhg(p.hold_peak)},
           {"loaded_longest_s", finite(p.loaded_longest)},
           {"releases", p.releases},
           {"slips", p.slips},
@@ -203,7 +206,10 @@ std::string result_json(const Result& r, bool full) {
                {"score", score_json(r)},
                {"knot", r.has_knot ? knot_json(r) : Json(nullptr)},
                {"events", events_json(r.events)}};
-  if (r.pressure) json["pressure"] = pressure_json(*r.pressure);
+  if (r.pressure) {
+    json["pressure"] = pressure_json(*r.pressure);
+    json["pressure_map"] = pressure_map_json(*r.pressure);
+  }
   if (r.needle) add_needle(*r.needle, json);
   json["series"] = Json::array();
   for (const Curve& c : r.series) json["series"].push_back(curve_json(c));

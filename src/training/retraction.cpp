@@ -17,6 +17,12 @@ double peak_of(const Observation& o) {
   return peak;
 }
 
+bool any_on_arm(const Observation& o) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(o.brain.n_blades); ++i)
+    if (o.brain.blades[i].parked) return true;
+  return false;
+}
+
 }  // namespace
 
 RetractionGoal parse_goal(const YamlNode& node) {
@@ -24,6 +30,7 @@ RetractionGoal parse_goal(const YamlNode& node) {
   const std::string kind = node.choice("kind", {"press", "release", "expose", "hold"});
   g.seconds = node.quantity("for", "s", Range::between(0.0, 7200.0));
   const Range any = Range::not_negative();
+  g.blind = node.flag_or("blind", false);
   if (kind == "press") {
     g.kind = RetractionGoal::Kind::press;
     g.low = node.quantity("from", "mmHg", any);
@@ -35,6 +42,8 @@ RetractionGoal parse_goal(const YamlNode& node) {
     g.kind = kind == "expose" ? RetractionGoal::Kind::expose : RetractionGoal::Kind::hold;
     g.share = node.number_or("share", 0.0, Range::between(0.0, 1.0));
     if (kind == "hold") g.low = node.quantity_or("from", "mmHg", 0.0, any);
+    g.high = node.quantity_or("below", "mmHg", std::numeric_limits<double>::infinity(), Range::positive());
+    g.on_arm = node.flag_or("on_arm", false);
     if (g.share <= 0.0 && g.low <= 0.0) node.refuse("share", "a share of the target above 0" + std::string(kind == "hold" ? ", or a pressure `from`" : ""));
   }
   return g;
@@ -53,20 +62,40 @@ bool RetractionWatch::met(const RetractionGoal& g, const Observation& o, double 
     case RetractionGoal::Kind::release:
       return peak < g.high;
     case RetractionGoal::Kind::expose:
-      return o.brain.exposed >= g.share;
     case RetractionGoal::Kind::hold:
-      return o.brain.exposed >= g.share && peak >= g.low;
+      return o.brain.exposed >= g.share && peak >= g.low && peak <= g.high && (!g.on_arm || any_on_arm(o));
   }
   return false;
 }
 
 void RetractionWatch::sample(const Observation& o, double peak) {
-  if (report_.time.size() >= kMostSamples) return;
-  if (!report_.time.empty() && o.time < report_.time.back() + 1.0 / kSamples - 1e-9) return;
+  const bool due = report_.time.empty() || o.time >= report_.time.back() + 1.0 / kSamples - 1e-9;
+  if (!due || report_.time.size() >= kMostSamples) {  // each column of the map shows the largest until the next one
+    for (std::size_t i = 0; i < static_cast<std::size_t>(o.brain.n_blades); ++i)
+      std::transform(o.brain.blades[i].profile.begin(), o.brain.blades[i].profile.end(), report_.profiles[i].end() - kProfileBins,
+                     report_.profiles[i].end() - kProfileBins, [](double now, double before) { return std::max(now, before); });
+    return;
+  }
   report_.time.push_back(o.time);
   report_.pressure.push_back(peak);
   report_.dose_curve.push_back(pressure_.dose());
   report_.exposed_curve.push_back(o.brain.exposed);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(o.brain.n_blades); ++i)
+    report_.profiles[i].insert(report_.profiles[i].end(), o.brain.blades[i].profile.begin(), o.brain.blades[i].profile.end());
+}
+
+/// Per place of the cortex: the largest pressure it has borne, and the pressure above the dose's threshold over the patient's time.
+void RetractionWatch::map_pressure(const Observation& o, double dt) {
+  const std::size_t n = o.brain.pressure.size();
+  if (report_.place_peak.size() != n) {
+    report_.place_peak.assign(n, 0.0);
+    report_.place_dose.assign(n, 0.0);
+  }
+  const double above = task_.limits.dose_above;
+  for (std::size_t k = 0; k < n; ++k) {
+    report_.place_peak[k] = std::max(report_.place_peak[k], o.brain.pressure[k]);
+    report_.place_dose[k] += dt * compression_ * std::max(0.0, o.brain.pressure[k] - above);
+  }
 }
 
 void RetractionWatch::observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events) {
@@ -83,12 +112,14 @@ void RetractionWatch::observe(const Observation& o, double dt, bool scored, std:
     report_.slips += name == "slip" ? 1 : 0;
     report_.edge_cuts += name == "edge-cut" ? 1 : 0;
   }
+  map_pressure(o, dt);
   report_.veins_torn = o.brain.veins_torn;
   report_.exposed = std::max(report_.exposed, o.brain.exposed);
   report_.perfusion_least = std::min(report_.perfusion_least, pressure_.perfusion());
   sample(o, peak);
   const RetractionGoal& g = task_.goals[static_cast<std::size_t>(step_)];
   const bool now = met(g, o, peak);
+  if (now && g.kind == RetractionGoal::Kind::hold) report_.hold_peak = std::max(report_.hold_peak, peak);
   if (now) kept_ += dt * compression_;
   else if (g.kind != RetractionGoal::Kind::hold) kept_ = 0.0;
   if (now && g.kind == RetractionGoal::Kind::press) {
@@ -107,6 +138,9 @@ double retraction_value(Measure measure, const PressureReport& r) {
     case Measure::pressure_tip: return r.tip;
     case Measure::pressure_dose: return r.dose;
     case Measure::time_in_red: return r.time_in_band[3];
+    case Measure::time_over: return r.time_in_band[1] + r.time_in_band[2] + r.time_in_band[3];
+    case Measure::hold_peak: return r.hold_peak;
+    case Measure::releases: return r.releases;
     case Measure::press_error: return r.press_error;
     case Measure::loaded_longest: return r.loaded_longest;
     case Measure::exposed: return r.exposed;

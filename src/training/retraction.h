@@ -27,9 +27,15 @@ struct PressureReport {
   double exposed = 0.0;                       // largest share of the target seen
   double press_error = 0.0;                   // [Pa], mean distance from the middle of the band asked for while pressing; NaN without
   double perfusion_least = 0.0;               // [Pa]
+  double hold_peak = 0.0;                     // [Pa], largest while an exposure was being held
   bool injured = false;
   PressureLimits limits;
   std::vector<double> time, pressure, dose_curve, exposed_curve;  // [s] of the scene, [Pa], [Pa s], share; ten a second
+  std::array<std::vector<double>, 2> profiles;   // [Pa], of each blade: kProfileBins from the tip on at each of these times
+  std::vector<double> place_peak, place_dose;    // [Pa], [Pa s], of each vertex of the surface
+  std::vector<std::string> blade_names;          // these three of the scene
+  Points rest;                                   // [m]
+  std::vector<std::array<int, 3>> triangles;
 };
 
 /// What a rubric line looks at; NaN for measures of other tasks.
@@ -41,6 +47,7 @@ class RetractionWatch {
 
   void observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events);
   int step() const { return step_; }
+  bool blind() const { return !done() && task_.goals[static_cast<std::size_t>(step_)].blind; }
   bool done() const { return step_ == static_cast<int>(task_.goals.size()); }
   const PressureWatch& pressure() const { return pressure_; }
   PressureReport report() const;
@@ -48,6 +55,7 @@ class RetractionWatch {
  private:
   bool met(const RetractionGoal& goal, const Observation& o, double peak) const;
   void sample(const Observation& o, double peak);
+  void map_pressure(const Observation& o, double dt);
 
   RetractionTask task_;
   PressureWatch pressure_;

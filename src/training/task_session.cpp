@@ -121,7 +121,8 @@ std::vector<TaskWarning> TaskSession::warnings() const {
   const std::string& seen = recogniser_.knot_class();
   const bool accepted = std::find(task_.accept.begin(), task_.accept.end(), seen) != task_.accept.end();
   if (retraction_)
-    for (auto& [level, code, text] : retraction_->pressure().messages()) list.push_back({level, code, text});
+    for (auto& [level, code, text] : retraction_->pressure().messages())
+      if (!retraction_->blind() || code == "pressure-alarm") list.push_back({level, code, text});
   if (task_.has_knot() && recogniser_.n_throws() >= task_.throws && !accepted) {
     list.push_back(
         {"warn", "wrong-knot", "The knot now is: " + seen + ". Asked for: " + task_.accept.front() + "."});
@@ -153,6 +154,7 @@ TaskStatus TaskSession::status() const {
   s.knot_class = recogniser_.knot_class();
   s.warnings = warnings();
   if (retraction_) s.retraction = retraction_->pressure();
+  s.blind = retraction_ && retraction_->blind();
   return s;
 }
 
@@ -175,7 +177,12 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security, const st
   r.seconds = elapsed_;
   r.security = security;
   r.events = events_;
-  if (retraction_) r.pressure = retraction_->report();
+  if (retraction_) {
+    r.pressure = retraction_->report();
+    for (const BladeDescription& blade : scene_.brain.blades) r.pressure->blade_names.push_back(blade.name);
+    r.pressure->rest = scene_.brain.rest;
+    r.pressure->triangles = scene_.brain.triangles;
+  }
   if (needle_) r.needle = needle_->report(join);
   if (observed_ && task_.has_knot()) {
     const ThreadPart part = tied_part(last_);

@@ -39,6 +39,7 @@ struct TaskStatus {
   std::string knot_class;             // as seen now
   std::vector<TaskWarning> warnings;  // in force now
   std::optional<PressureWatch> retraction;  // of brain retraction: pressure and dose now
+  bool blind = false;                       // and whether they are to be hidden
 };
 
 class TaskSession {

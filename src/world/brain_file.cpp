@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "base/error.h"
 #include "world/brain_scene.h"
@@ -22,6 +23,8 @@ CortexShape read_shape(const YamlNode& node) {
   s.grey = node.quantity("grey", "mm", Range::not_negative());
   s.fissure_depth = node.quantity_or("fissure_depth", "mm", 0.0, Range::not_negative());
   s.fissure_gap = node.quantity_or("fissure_gap", "mm", 1e-3, Range::positive());
+  s.open_side = node.flag_or("open_side", false);
+  s.lean = node.quantity_or("lean", "mm", 0.0, Range::not_negative());
   s.fissure_wave = node.quantity_or("fissure_wave", "mm", 0.0, Range::not_negative());
   return s;
 }
@@ -61,12 +64,17 @@ void read_brain(const std::string& path, BrainModel& m) {
   const YamlNode file = open_model_file(path, "filum-brain/1");
   m.name = file.text("title");
   if (file.has("mesh")) {
-    const std::string mesh = (std::filesystem::path(path).parent_path() / file.text("mesh")).string();
-    m.cortex = cortex_from_mesh(load_mesh(mesh), file.quantity("held_below", "mm"));
+    m.mesh_name = file.text("mesh");
+    if (m.mesh_name.find('/') != std::string::npos || m.mesh_name.find("..") != std::string::npos) file.refuse("mesh", "a file beside this one");
+    m.mesh_file = (std::filesystem::path(path).parent_path() / m.mesh_name).string();
+    m.cortex = cortex_from_mesh(load_mesh(m.mesh_file), file.quantity("held_below", "mm"),
+                                file.quantity_or("held_beyond", "mm", std::numeric_limits<double>::infinity(), Range::positive()));
   } else {
     m.cortex = make_cortex(read_shape(file.map("shape")), path);
   }
   const double dial = file.number_or("stiffness_dial", 1.0, Range::between(0.1, 10.0));
+  m.bone_y = m.cortex.bone_y;
+  m.fem.averaged_pressure = file.flag_or("averaged_pressure", false);
   m.regions = {read_tissue(file.map("grey")), read_tissue(file.map("white"))};
   for (FemMaterial& tissue : m.regions) tissue.young *= dial;
   m.fem.mass_damping = measured(file, "mass_damping", "1/s", Range::not_negative());
@@ -77,6 +85,16 @@ void read_brain(const std::string& path, BrainModel& m) {
   m.contact.reach = file.quantity("reach", "mm", Range::positive());
   read_veins(file, m);
   file.finish();
+}
+
+/// Keys of a blade that somebody else puts on its arm; the first is where it starts.
+std::vector<PlacedKey> read_placed(const YamlNode& blade, const Pose& start) {
+  std::vector<PlacedKey> keys;
+  for (const YamlNode& item : blade.items_or_none("placed")) {
+    if (keys.empty()) keys.push_back({0.0, start});
+    keys.push_back({item.quantity("t", "s", Range::between(keys.back().t + 1e-3, 600.0)), read_pose(item)});
+  }
+  return keys;
 }
 
 void read_blades(const std::string& root, const YamlNode& scene, Model& m, BrainModel& brain) {
@@ -94,6 +112,8 @@ void read_blades(const std::string& root, const YamlNode& scene, Model& m, Brain
     tool.base_radius = 0.5 * shape.width;
     brain.blades.push_back(shape);
     brain.blade_start.push_back(read_pose(item));
+    brain.arm_keeps_force.push_back(item.has("arm") && item.choice("arm", {"pose", "force"}) == "force");
+    brain.placed.push_back(read_placed(item, brain.blade_start.back()));
   }
   if (brain.blades.empty()) scene.refuse("blades", "one or two blades");
   m.description.n_tools = static_cast<int>(brain.blades.size());
@@ -133,6 +153,7 @@ std::shared_ptr<const Model> load_brain_scene(const std::string& root, const std
   m->sources.push_back(own ? named : model_file);
   read_brain(own ? root + "/" + named : model_file, *brain);
   if (!scene.flag_or("relaxation", true)) brain->fem.relaxation.clear();
+  brain->section_x = scene.quantity_or("section", "mm", 0.0);
   brain->time_compression = scene.number_or("time_compression", 1.0, Range::between(1.0, 60.0));
   if (scene.has("target")) {
     const YamlNode target = scene.map("target");
@@ -147,6 +168,7 @@ std::shared_ptr<const Model> load_brain_scene(const std::string& root, const std
   }
   brain->fem.single_precision = true;
   brain->fem.solver.relative = scene.number_or("residual", 1e-3, Range::between(1e-12, 1e-2));
+  brain->fem.solver.absolute = 20e-6;  // [N]: tissue that nobody holds needs no more
   brain->fem.solver.max_iterations = scene.integer_or("iterations", 60, 1, 10000);
   scene.finish();
   d.capacity = 8;  // of the thread that is not there

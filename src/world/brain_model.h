@@ -21,18 +21,29 @@ struct BridgingVein {
   double strength = 0.0;         // [N]
 };
 
+/// Where somebody else has put a blade on its arm before the trainee takes over: it goes from key to key, then stays.
+struct PlacedKey {
+  double t = 0.0;  // [s]
+  Pose X_W;
+};
+
 struct BrainModel {
   std::string name;
+  std::string mesh_name, mesh_file;  // as the model file says, and where that is; empty: made from a shape
   Cortex cortex;
   std::vector<FemMaterial> regions;
   FemOptions fem;
   SpatulaParameters contact;
   std::vector<BladeShape> blades;
   std::vector<Pose> blade_start;
+  std::vector<std::vector<PlacedKey>> placed;  // of each blade; none: it is in the hand from the start
+  std::vector<char> arm_keeps_force;           // of each blade: what its arm keeps once locked, force or pose
   std::vector<BridgingVein> veins;
   Vec3 target_W = Vec3::Zero();  // [m], centre of the disc to be shown
   double target_radius = 0.0;    // [m], 0: no target
   double time_compression = 1.0; // scene seconds that count as one second of scene time in timers, dose and relaxation
+  double bone_y = 0.0;           // [m], see Cortex
+  double section_x = 0.0;        // [m], of the plane of the cross-section
   double fastest = 0.3;          // [m/s], and 3 rad/s: a blade follows its hand no faster
   double strongest = 10.0;       // [N], force given to a device at most
   double slip_distance = 2e-3;   // [m], sliding that counts as a slip
@@ -44,7 +55,10 @@ struct BladeState {
   Pose X_WD;                     // as last commanded
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();  // [N], [N m], of the tissue on the blade about its tip
   double slid = 0.0;             // [m], largest sliding of a contact since the last slip
-  std::int32_t parked = 0;       // held by its arm
+  std::int32_t parked = 0;       // held by its arm: 1 while the clutch is pressed, 2 until it is freed
+  std::int32_t toggling = 0;     // the button that locks and frees is down
+  Pose X_DB;                     // of the blade in the hand's frame, as it was taken
+  Vec3 kept_force = Vec3::Zero();  // [N], of the tissue on the blade when the arm was locked
   std::int32_t cutting = 0;      // edge pressure above the limit
 };
 

@@ -9,6 +9,9 @@
 
 namespace filum {
 
+inline constexpr int kProfileBins = 16;
+inline constexpr double kProfileBin = 4e-3;  // [m]
+
 struct BladeObservation {
   Vec3 force_W = Vec3::Zero();   // [N], of the tissue on the blade
   Vec3 torque_W = Vec3::Zero();  // [N m], about its tip
@@ -18,8 +21,11 @@ struct BladeObservation {
   double peak = 0.0;             // [Pa], largest pressure of a vertex
   double mean = 0.0;             // [Pa], normal force over area
   double tip = 0.0;              // [Pa], largest within 5 mm of the tip
+  std::array<double, kProfileBins> profile{};  // [Pa], largest pressure by distance from the tip, kProfileBin each
+  Mat3 stiffness_W = Mat3::Zero();  // [N/m], of the tissue touched, against a further translation of the blade
   int contacts = 0;
   bool parked = false;           // held by its arm
+  bool keeps_force = false;      // the arm keeps its force, not its pose
 };
 
 struct BrainObservation {
@@ -31,6 +37,8 @@ struct BrainObservation {
   double exposed = 0.0;          // share of the target that can be seen from above
   int veins_torn = 0;
   std::vector<int> vein_torn;    // of each vein, 0 or 1
+  Points section;                // [m], 3 x m, vertices of the cross-section
+  std::vector<double> section_stress;  // [Pa], von Mises, of each of its triangles
   int iterations = 0;            // of the solver
   double residual = 0.0;         // [N]
 };
@@ -54,8 +62,11 @@ struct BrainDescription {
   Points rest;                                // [m], 3 x n
   std::vector<BladeDescription> blades;       // blade i is tool i
   std::vector<VeinShape> veins;
+  std::vector<std::array<int, 3>> section_triangles;  // of the cross-section's vertices
+  Points section_rest;                        // [m], 3 x m
   Vec3 target_W = Vec3::Zero();               // [m]
   double target_radius = 0.0;                 // [m]
+  double bone_y = 0.0;                        // [m], bone fills what lies below this y; 0: none
   double time_compression = 1.0;
 };
 

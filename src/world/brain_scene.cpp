@@ -5,29 +5,18 @@
 #include <numbers>
 
 #include "base/hash.h"
+#include "world/blade_arm.h"
 
 namespace filum {
 namespace {
 
 constexpr double kTip = 5e-3;      // [m] from the tip's edge that count as the tip
-constexpr double kTurnRate = 3.0;  // [rad/s], of a blade at most
 constexpr double kMargin = 1e-3;   // [m], that tissue may move in a step
 constexpr int kSights = 19;        // lines of sight to the target
 constexpr int kLookEvery = 10;     // steps between two looks at the target
 
 void event(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
   if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
-}
-
-/// The pose on the way from a to b that is no further than the limits allow.
-Pose towards(const Pose& a, const Pose& b, double far, double turn) noexcept {
-  Pose X;
-  const Vec3 step = b.p - a.p;
-  const double length = step.norm(), angle = a.q.angularDistance(b.q);
-  X.p = length > far ? Vec3(a.p + step * (far / length)) : b.p;
-  X.q = angle > turn ? a.q.slerp(turn / angle, b.q) : b.q;
-  X.q.normalize();
-  return X;
 }
 
 /// Points spread evenly over the unit disc (sunflower).
@@ -60,7 +49,8 @@ BrainScene::BrainScene(std::shared_ptr<const BrainModel> model)
     : model_(std::move(model)),
       fem_(model_->cortex.mesh, model_->regions, compressed(model_->fem, model_->time_compression), model_->name),
       contact_(model_->contact),
-      tree_(model_->cortex.surface, model_->cortex.mesh.nodes) {
+      tree_(model_->cortex.surface, model_->cortex.mesh.nodes),
+      section_(cut_mesh(model_->cortex.mesh, model_->section_x)) {
   fem_.hold(model_->cortex.held);
   const auto n = static_cast<std::size_t>(model_->cortex.mesh.n_nodes());
   vertex_of_.assign(n, -1);
@@ -79,6 +69,10 @@ BrainScene::BrainScene(std::shared_ptr<const BrainModel> model)
   }
   positions_ = model_->cortex.mesh.nodes;
   loads_ = Points::Zero(3, model_->cortex.mesh.n_nodes());
+  response_.assign(3 * blades_.size(), Columns4::Zero(4, model_->cortex.mesh.n_nodes()));
+  stiffness_.assign(blades_.size(), Mat3::Zero());
+  probes_.reserve(n);
+  fem_.prepare_response();
 }
 
 BrainState BrainScene::start() const {
@@ -86,9 +80,10 @@ BrainState BrainScene::start() const {
   s.fem = fem_.rest();
   s.seen = s.fem.u;
   s.contacts.reserve(model_->cortex.surface_nodes.size());
-  for (const Pose& X : model_->blade_start) {
+  for (std::size_t i = 0; i < blades_.size(); ++i) {
     s.blades.emplace_back();
-    s.blades.back().X_W = s.blades.back().X_WD = X;
+    s.blades.back().X_W = s.blades.back().X_WD = model_->blade_start[i];
+    s.blades.back().parked = model_->placed[i].empty() ? 0 : 2;
   }
   s.torn.assign(model_->veins.size(), 0);
   return s;
@@ -103,6 +98,7 @@ void BrainScene::step(const Inputs& inputs, BrainState& s, std::array<std::int32
   summary_ = fem_.step(s.fem, contact_.moved(), &loads_);
   if (!summary_.sound) event(o, "solver-trouble", -1, summary_.residual, "N");
   contact_.read(fem_, s.fem.u, blades_, s.contacts);
+  feel(s, o.step);
   report(s, o);
   if (o.step % kLookEvery == 0) s.exposed = exposed_share(s);
 }
@@ -110,21 +106,9 @@ void BrainScene::step(const Inputs& inputs, BrainState& s, std::array<std::int32
 void BrainScene::move_blades(const Inputs& inputs, BrainState& s, std::array<std::int32_t, 3>& valid, Observation& o) noexcept {
   const double dt = fem_.options().dt;
   for (std::size_t i = 0; i < blades_.size(); ++i) {
-    const ToolInput& in = inputs.tools[i];
-    BladeState& blade = s.blades[i];
-    const bool sound = in.valid && in.X_WD.finite() && std::abs(in.X_WD.q.norm() - 1.0) < 1e-3;
-    if (sound != (valid[i] != 0)) event(o, sound ? "input-back" : "input-lost", static_cast<int>(i), 0.0, "-");
-    valid[i] = sound;
-    blades_[i].X_before = blade.X_W;
-    if (sound) {
-      const std::int32_t parked = (in.buttons & 1u) != 0 ? 1 : 0;
-      if (parked != blade.parked) event(o, parked != 0 ? "arm-locked" : "arm-freed", static_cast<int>(i), 0.0, "-");
-      blade.parked = parked;
-      blade.X_WD = in.X_WD;
-      blade.X_WD.q.normalize();
-      if (blade.parked == 0) blade.X_W = towards(blade.X_W, blade.X_WD, model_->fastest * dt, kTurnRate * dt);
-    }
-    blades_[i].X_now = blade.X_W;
+    blades_[i].X_before = s.blades[i].X_W;
+    move_blade(*model_, i, inputs.tools[i], o.time, dt, s.blades[i], valid[i], o);
+    blades_[i].X_now = s.blades[i].X_W;
   }
 }
 
@@ -170,6 +154,28 @@ void BrainScene::pull_veins(BrainState& s, Observation& o) noexcept {
       loads_.col(v.node) = span * (force / length);
     }
   }
+}
+
+/// One column of one blade's stiffness a step: the force that answers a unit translation, found from the one found last.
+void BrainScene::feel(const BrainState& s, std::uint64_t step) noexcept {
+  const std::size_t column = static_cast<std::size_t>(step) % response_.size(), blade = column / 3;
+  const int axis = static_cast<int>(column % 3);
+  probes_ = contact_.moved();
+  bool touched = false;
+  for (std::size_t k = 0; k < probes_.size(); ++k) {
+    const bool own = s.contacts[k].blade == static_cast<std::int32_t>(blade);
+    touched = touched || (own && s.contacts[k].normal_force > 0.0);
+    probes_[k].target = own ? Vec3(Vec3::Unit(axis)) : Vec3(Vec3::Zero());
+  }
+  if (!touched) {
+    stiffness_[blade].setZero();
+    return;
+  }
+  fem_.respond(probes_, response_[column]);
+  Vec3 force = Vec3::Zero();
+  for (std::size_t k = 0; k < probes_.size(); ++k)
+    if (s.contacts[k].blade == static_cast<std::int32_t>(blade)) force += probes_[k].force;
+  stiffness_[blade].col(axis) = force;
 }
 
 /// Slips, cuts by the edge, and forces beyond what a device is given.
@@ -219,7 +225,10 @@ void BrainScene::measure(const BrainState& s, Observation& o) noexcept {
     b.pressure[v] = pressure;
     ++blade.contacts;
     blade.peak = std::max(blade.peak, pressure);
-    if ((s.blades[i].X_W.inverse() * place(s, c.node)).z() < kTip) blade.tip = std::max(blade.tip, pressure);
+    const double along = (s.blades[i].X_W.inverse() * place(s, c.node)).z();
+    if (along < kTip) blade.tip = std::max(blade.tip, pressure);
+    double& bin = blade.profile[static_cast<std::size_t>(std::clamp(static_cast<int>(along / kProfileBin), 0, kProfileBins - 1))];
+    bin = std::max(bin, pressure);
     blade.area += c.share * area_[v];
     total[i] += c.normal_force;
     touched[i] += area_[v];
@@ -264,12 +273,24 @@ void BrainScene::observe(const BrainState& s, const std::array<std::int32_t, 3>&
     b.push_W = pivot.push;
     b.turn_W = pivot.turn;
     b.parked = blade.parked != 0;
+    b.keeps_force = b.parked && model_->arm_keeps_force[i];
+    b.stiffness_W = 0.5 * (stiffness_[i] + stiffness_[i].transpose());
   }
+  observe_section(s, o.brain);
   o.brain.exposed = s.exposed;
   o.brain.veins_torn = 0;
   for (std::size_t k = 0; k < s.torn.size(); ++k) o.brain.veins_torn += o.brain.vein_torn[k] = s.torn[k];
   o.brain.iterations = summary_.iterations;
   o.brain.residual = summary_.residual;
+}
+
+void BrainScene::observe_section(const BrainState& s, BrainObservation& b) noexcept {
+  positions_ = model_->cortex.mesh.nodes + s.fem.u;
+  for (std::size_t k = 0; k < section_.corners.size(); ++k) b.section.col(static_cast<Eigen::Index>(k)) = corner_place(section_.corners[k], positions_);
+  for (std::size_t k = 0; k < section_.triangles.size(); ++k) {
+    const bool out = s.fem.removed[static_cast<std::size_t>(section_.element[k])] != 0;
+    b.section_stress[k] = out ? 0.0 : von_mises(fem_.relaxed_stress(s.fem, section_.element[k]));
+  }
 }
 
 void BrainScene::size_observation(Observation& o) const {
@@ -279,6 +300,8 @@ void BrainScene::size_observation(Observation& o) const {
   b.pressure.assign(static_cast<std::size_t>(b.n), 0.0);
   b.n_blades = static_cast<int>(blades_.size());
   b.vein_torn.assign(model_->veins.size(), 0);
+  b.section = Points::Zero(3, static_cast<Eigen::Index>(section_.corners.size()));
+  b.section_stress.assign(section_.triangles.size(), 0.0);
 }
 
 void describe_brain(const BrainModel& model, BrainDescription& b) {
@@ -293,8 +316,13 @@ void describe_brain(const BrainModel& model, BrainDescription& b) {
     b.blades.push_back({shape.name, surface.vertices, surface.triangles, shape.width, shape.grip});
   }
   for (const BridgingVein& v : model.veins) b.veins.push_back({vertex(v.node), v.dura_W});
+  const BrainSection section = cut_mesh(model.cortex.mesh, model.section_x);
+  b.section_triangles = section.triangles;
+  b.section_rest.resize(3, static_cast<Eigen::Index>(section.corners.size()));
+  for (std::size_t k = 0; k < section.corners.size(); ++k) b.section_rest.col(static_cast<Eigen::Index>(k)) = corner_place(section.corners[k], model.cortex.mesh.nodes);
   b.target_W = model.target_W;
   b.target_radius = model.target_radius;
+  b.bone_y = model.bone_y;
   b.time_compression = model.time_compression;
 }
 
@@ -312,9 +340,9 @@ std::array<std::pair<const char*, std::uint64_t>, 8> brain_hashes(const BrainSta
     contacts = hash_bytes(row.data(), sizeof row, contacts);
   }
   for (const BladeState& b : s.blades) {
-    for (const Vec3* v : {&b.X_W.p, &b.X_WD.p, &b.force, &b.torque}) blades = hash_bytes(v->data(), 3 * sizeof(double), blades);
-    for (const Quat* q : {&b.X_W.q, &b.X_WD.q}) blades = hash_bytes(q->coeffs().data(), 4 * sizeof(double), blades);
-    const std::array<double, 3> row = {b.slid, double(b.parked), double(b.cutting)};
+    for (const Vec3* v : {&b.X_W.p, &b.X_WD.p, &b.X_DB.p, &b.force, &b.torque, &b.kept_force}) blades = hash_bytes(v->data(), 3 * sizeof(double), blades);
+    for (const Quat* q : {&b.X_W.q, &b.X_WD.q, &b.X_DB.q}) blades = hash_bytes(q->coeffs().data(), 4 * sizeof(double), blades);
+    const std::array<double, 4> row = {b.slid, double(b.parked), double(b.toggling), double(b.cutting)};
     blades = hash_bytes(row.data(), sizeof row, blades);
   }
   std::uint64_t rest = hash_bytes(&s.exposed, sizeof s.exposed, hash_bytes(s.torn.data(), s.torn.size() * sizeof(std::int32_t)));

@@ -5,6 +5,7 @@
 
 #include "collision/surface_tree.h"
 #include "world/brain_model.h"
+#include "world/brain_section.h"
 #include "world/inputs.h"
 #include "world/observation.h"
 
@@ -28,7 +29,9 @@ class BrainScene {
   void find_candidates(const BrainState& s) noexcept;
   void pull_veins(BrainState& s, Observation& o) noexcept;
   void measure(const BrainState& s, Observation& o) noexcept;
+  void feel(const BrainState& s, std::uint64_t step) noexcept;
   void report(BrainState& s, Observation& o) noexcept;
+  void observe_section(const BrainState& s, BrainObservation& b) noexcept;
   double exposed_share(const BrainState& s) noexcept;
   Vec3 place(const BrainState& s, int node) const noexcept { return model_->cortex.mesh.nodes.col(node) + s.fem.u.col(node); }
 
@@ -36,6 +39,10 @@ class BrainScene {
   LinearFem fem_;
   SpatulaContact contact_;
   SurfaceTree tree_;
+  BrainSection section_;
+  std::vector<Columns4> response_;  // of the tissue to a unit translation of each blade along each axis, found last
+  std::vector<Mat3> stiffness_;     // [N/m], of each blade: a column a step
+  std::vector<MovedNode> probes_;
   std::vector<RigidSurface> surfaces_;
   std::vector<MovingBlade> blades_;
   std::vector<int> vertex_of_;   // node -> vertex of the surface, -1 inside

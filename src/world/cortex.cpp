@@ -19,6 +19,8 @@ void check(const CortexShape& s, const std::string& file) {
   if (s.cells[1] % 2 != 0) refuse("cells", s.cells[1], "an even number across, so that the fissure has nodes");
   if (!(s.gyrus > 1e-3)) refuse("gyrus", s.gyrus, "more than 1 mm");
   if (!(s.sulcus >= 0.0 && s.sulcus < 0.2 * s.size.z())) refuse("sulcus", s.sulcus, "less than a fifth of the depth");
+  if (!(s.lean >= 0.0 && s.lean < 0.3 * s.size.y())) refuse("lean", s.lean, "less than three tenths of the width");
+  if (s.open_side && s.fissure_depth > 0.0) refuse("open_side", 1.0, "no fissure beside it");
   if (!(s.fissure_depth >= 0.0 && s.fissure_depth < 0.9 * s.size.z())) refuse("fissure_depth", s.fissure_depth, "less than nine tenths of the depth");
 }
 
@@ -78,6 +80,17 @@ void shape_surface(const CortexShape& s, TetMesh& mesh) {
   }
 }
 
+/// The block beside y = 0, its free side leaning over towards the bone; returns where that begins.
+double open_side(const CortexShape& s, TetMesh& mesh) {
+  constexpr double kGap = 1e-3;  // [m], between bone and what hangs over furthest
+  for (int i = 0; i < mesh.n_nodes(); ++i) {
+    const Vec3 x = mesh.nodes.col(i);
+    const double near = 0.5 - x.y() / s.size.y(), up = std::max(0.0, 1.0 + x.z() / s.size.z());
+    mesh.nodes(1, i) = x.y() + 0.5 * s.size.y() - s.lean * near * up;
+  }
+  return -s.lean - kGap;
+}
+
 std::vector<int> nodes_of(const std::vector<Triangle>& surface) {
   std::vector<int> list;
   for (const Triangle& t : surface) list.insert(list.end(), t.begin(), t.end());
@@ -99,7 +112,8 @@ Cortex make_cortex(const CortexShape& s, const std::string& file) {
   std::vector<char> border(static_cast<std::size_t>(mesh.n_nodes()), 0);
   for (int i = 0; i < mesh.n_nodes(); ++i) {
     const Vec3 x = mesh.nodes.col(i);
-    border[static_cast<std::size_t>(i)] = x.z() < -s.size.z() + 1e-9 || std::abs(x.x()) > half.x() - 1e-9 || std::abs(x.y()) > half.y() - 1e-9;
+    const bool side = x.y() > half.y() - 1e-9 || (x.y() < -half.y() + 1e-9 && !s.open_side);
+    border[static_cast<std::size_t>(i)] = x.z() < -s.size.z() + 1e-9 || std::abs(x.x()) > half.x() - 1e-9 || side;
     if (border[static_cast<std::size_t>(i)]) c.held.push_back(i);
   }
   for (const Tetrahedron& t : mesh.tets) {
@@ -112,20 +126,20 @@ Cortex make_cortex(const CortexShape& s, const std::string& file) {
     if (!outer) c.surface.push_back(t);
   }
   shape_surface(s, mesh);
+  if (s.open_side) c.bone_y = open_side(s, mesh);
   c.surface_nodes = nodes_of(c.surface);
   check_mesh(mesh, file);
   return c;
 }
 
-Cortex cortex_from_mesh(TetMesh mesh, double held_below) {
+Cortex cortex_from_mesh(TetMesh mesh, double held_below, double held_beyond) {
   Cortex c;
   c.mesh = std::move(mesh);
+  const auto is_held = [&](int i) { return c.mesh.nodes(2, i) < held_below || c.mesh.nodes.col(i).head<2>().norm() > held_beyond; };
   for (int i = 0; i < c.mesh.n_nodes(); ++i)
-    if (c.mesh.nodes(2, i) < held_below) c.held.push_back(i);
-  for (const Triangle& t : surface_triangles(c.mesh)) {
-    const bool low = c.mesh.nodes(2, t[0]) < held_below && c.mesh.nodes(2, t[1]) < held_below && c.mesh.nodes(2, t[2]) < held_below;
-    if (!low) c.surface.push_back(t);
-  }
+    if (is_held(i)) c.held.push_back(i);
+  for (const Triangle& t : surface_triangles(c.mesh))
+    if (!is_held(t[0]) || !is_held(t[1]) || !is_held(t[2])) c.surface.push_back(t);
   c.surface_nodes = nodes_of(c.surface);
   return c;
 }

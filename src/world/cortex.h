@@ -17,6 +17,8 @@ struct CortexShape {
   double fissure_depth = 0.0;   // [m], 0: none; runs along x through the middle
   double fissure_gap = 1e-3;    // [m], distance of the lips at the top; at the bottom they meet
   double fissure_wave = 2e-3;   // [m], by which its course sways
+  bool open_side = false;       // the side of least y is free cortex that faces bone, y = 0 there: a lobe seen from its base
+  double lean = 0.0;            // [m], by which that side hangs over at the top
   double grey = 3e-3;        // [m], thickness of the cortex: region 0; white matter below: region 1
 };
 
@@ -25,11 +27,13 @@ struct Cortex {
   std::vector<int> held;             // nodes at the border of the block
   std::vector<Triangle> surface;     // what a blade can touch: cortex and the walls of the fissure, outward
   std::vector<int> surface_nodes;    // of them, ascending
+  double bone_y = 0.0;               // [m], bone fills what lies below this y, for the eye; 0: none
 };
 
 /// Throws InputError (naming `file`) for sizes that make no block.
 Cortex make_cortex(const CortexShape& shape, const std::string& file);
-/// The same from a mesh that was made elsewhere: held where its normal points away from +z and below `held_below` [m].
-Cortex cortex_from_mesh(TetMesh mesh, double held_below);
+/// The same from a mesh that was made elsewhere: held below `held_below` and, seen from above, further than `held_beyond` from the
+/// origin [m].
+Cortex cortex_from_mesh(TetMesh mesh, double held_below, double held_beyond);
 
 }  // namespace filum

@@ -4,7 +4,10 @@
 
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "base/error.h"
+#include "training/pressure_map.h"
 #include "training/task_session.h"
 
 namespace filum {
@@ -93,6 +96,54 @@ TEST(Retraction, TimesAreThePatientsWhereTheSceneIsCompressed) {
   b.hold(15, 0.35);  // 3.5 s
   EXPECT_EQ(b.session.status().step_index, 1);
   EXPECT_NEAR(b.session.retraction()->report().time_in_band[0] + b.session.retraction()->report().time_in_band[1], 3.4, 0.01);
+}
+
+TEST(Retraction, AnExposureOnTheArmCountsOnlyWhileTheArmHoldsBelowTheLimit) {
+  Bench b("retractor-correction");
+  b.hold(40, 6);
+  b.hold(0, 6);
+  b.hold(30, 12, 0.9);
+  EXPECT_EQ(b.session.status().step_index, 2) << "above the limit";
+  b.hold(10, 11, 0.9);
+  EXPECT_EQ(b.session.status().step_index, 3);
+  b.hold(10, 70, 0.9);
+  EXPECT_FALSE(b.session.done()) << "in the hand";
+  b.o.brain.blades[0].parked = true;
+  b.hold(10, 61, 0.9);
+  EXPECT_TRUE(b.session.done());
+  const Result r = b.session.finish();
+  EXPECT_NEAR(r.pressure->hold_peak / kMmHg, 10.0, 1e-9);
+  EXPECT_NEAR(r.pressure->peak / kMmHg, 40.0, 1e-9);
+}
+
+TEST(Retraction, BlindStepsAreSaidToBeBlindAndWarnOfNothing) {
+  Bench b("press-to-target");
+  b.hold(39, 1);
+  EXPECT_FALSE(b.session.status().blind);
+  EXPECT_FALSE(b.session.status().warnings.empty());
+  b.hold(15, 4);
+  b.hold(0, 2);
+  b.hold(39, 1);
+  EXPECT_TRUE(b.session.status().blind);
+  EXPECT_TRUE(b.session.status().warnings.empty());
+}
+
+TEST(Retraction, TheMapHoldsTheLargestPressureOfEachMomentAndPlace) {
+  Bench b("press-to-target");
+  b.o.brain.pressure = {0.0, 20.0 * kMmHg};
+  b.o.brain.blades[0].profile[2] = 20.0 * kMmHg;
+  b.hold(20, 60);
+  PressureReport p = b.session.retraction()->report();
+  p.blade_names = {"spatula"};
+  const nlohmann::ordered_json map = pressure_map_json(p);
+  EXPECT_GT(map["time"].size(), 300u);
+  EXPECT_LE(map["time"].size(), kMapColumns);
+  EXPECT_EQ(map["blades"][0]["pressure"].size(), map["time"].size() * static_cast<std::size_t>(kProfileBins));
+  EXPECT_EQ(map["blades"][0]["pressure"][2], 20.0);
+  EXPECT_EQ(map["blades"][0]["pressure"][3], 0.0);
+  EXPECT_EQ(map["peak"][1], 20.0);
+  EXPECT_NEAR(map["dose"][1].get<double>(), 10.0, 0.1);  // 10 mmHg above the threshold for a minute
+  EXPECT_EQ(map["dose"][0], 0.0);
 }
 
 TEST(Retraction, GoalsThatAskForNothingAreRefused) {

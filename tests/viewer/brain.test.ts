@@ -3,18 +3,20 @@ import { describe, expect, it } from "vitest";
 import type { Frame, Scene } from "@viewer/messages";
 import { Brain, kPressureStops, pressureColour, pressureView, tissueColour } from "@viewer/scene/brain";
 import { BrainPanel, share } from "@viewer/ui/brain_panel";
+import { mapColour, pressureAt, pressureMapPanel } from "@viewer/ui/pressure_map";
+import { fullScale, rampColour, sectionValues } from "@viewer/ui/section_view";
 import { frameAt, kScene } from "./sample_frames.mjs";
 
 const shape = {
   name: "block", triangles: [0, 1, 2, 1, 3, 2], rest: [0, 0, 0, 0.01, 0, 0, 0, 0.01, 0, 0.01, 0.01, 0],
   blades: [{ name: "spatula", vertices: [-0.005, 0, 0, 0.005, 0, 0, 0, 0, 0.08], triangles: [0, 1, 2], width: 0.01, grip: 0.1 }],
-  veins: [{ vertex: 3, dura: [0.02, 0.01, 0.004] as [number, number, number] }], target: null, time_compression: 10,
+  veins: [{ vertex: 3, dura: [0.02, 0.01, 0.004] as [number, number, number] }], target: null, bone: -0.007, section: { rest: [0, 0, 0, 0, 0.01, 0, 0, 0, -0.01], triangles: [0, 1, 2] }, time_compression: 10,
 };
 const scene = { ...kScene, brain: shape } as unknown as Scene;
-const retraction = { pressure: 24, band: "orange", dose: 80, dose_band: "yellow", loaded: 125, perfusion: -1, bands: [10, 20, 30], dose_bands: [75, 150, 225], alarm: 40, label: "Training heuristic, not a clinical limit", version: "1", source: "rats" };
+const retraction = { blind: false, pressure: 24, band: "orange", dose: 80, dose_band: "yellow", loaded: 125, perfusion: -1, bands: [10, 20, 30], dose_bands: [75, 150, 225], alarm: 40, label: "Training heuristic, not a clinical limit", version: "1", source: "rats" };
 function frame(pressure: number[], torn = 0): Frame {
   const made = frameAt(1, 1, 10);
-  return { ...made, task: { ...made.task, retraction }, brain: { positions: shape.rest.map((x, i) => x - (i % 3 === 2 ? 0.002 : 0)), pressure, blades: [{ force: 0.42, area: 1.3, peak: 24, mean: 12, tip: 24, parked: true }], exposed: 0.5, veins_torn: [torn] } } as unknown as Frame;
+  return { ...made, task: { ...made.task, retraction }, brain: { positions: shape.rest.map((x, i) => x - (i % 3 === 2 ? 0.002 : 0)), pressure, blades: [{ force: 0.42, area: 1.3, peak: 24, mean: 12, tip: 24, parked: true, keeps_force: true }], exposed: 0.5, veins_torn: [torn], section: { positions: [0, 0, -0.003, 0, 0.01, 0, 0, 0, -0.01], stress: [1.4] } } } as unknown as Frame;
 }
 
 describe("pressure colours", () => {
@@ -85,5 +87,66 @@ describe("brain panel", () => {
     expect(off.getAttribute("aria-pressed")).toBe("true");
     expect(drawn).toBeGreaterThan(1);
     pressureView.mode = "scale";
+  });
+});
+
+describe("cross-section", () => {
+  it("shows the displacement of its corners in mm and the stress as it comes", () => {
+    expect(sectionValues(scene, frame([]), "displacement")[0]).toBeCloseTo(3, 6);
+    expect(sectionValues(scene, frame([]), "stress")).toEqual([1.4]);
+    expect(sectionValues(scene, frame([]), "off")).toEqual([]);
+    expect(fullScale(1.4)).toBe(2);
+    expect(fullScale(1e9)).toBe(50);
+    expect(rampColour(-1)).toBe("rgb(0 34 78)");
+    expect(rampColour(2)).toBe("rgb(254 232 56)");
+  });
+  it("says its scale in words", () => {
+    const panel = new BrainPanel(scene, () => {});
+    [...panel.element.querySelectorAll("button")].find((b) => b.textContent === "Stress")!.click();
+    panel.show(frame([0, 0, 0, 0]), scene);
+    expect(panel.element.textContent).toContain("Von Mises stress from 0 to 2 kPa; largest 1.40 kPa");
+  });
+});
+
+describe("a blind step", () => {
+  it("shows no pressure, neither in words nor on the tissue, and shows it again afterwards", () => {
+    const panel = new BrainPanel(scene, () => {}), seen = frame([40, 40, 40, 40]), blind = { ...seen, task: { ...seen.task, retraction: { ...retraction, blind: true } } } as unknown as Frame;
+    panel.show(blind, scene);
+    const meters = [...panel.element.querySelectorAll<HTMLElement>(".brainmeter")];
+    expect(meters.every((meter) => meter.hidden)).toBe(true);
+    const brain = new Brain(shape, true);
+    brain.update(blind);
+    const colour = (brain.group.children[0] as THREE.Mesh<THREE.BufferGeometry>).geometry.getAttribute("color");
+    expect(colour.getX(0)).toBeGreaterThan(colour.getZ(0));
+    panel.show(seen, scene);
+    expect(meters.some((meter) => meter.hidden)).toBe(false);
+    expect(pressureView.blind).toBe(false);
+  });
+});
+
+describe("retractor's arm", () => {
+  it("is there while the blade is held by it", () => {
+    const brain = new Brain(shape, true), arms = () => brain.group.children.filter((c) => c instanceof THREE.Group && c.children.length === 5);
+    brain.update(frame([0, 0, 0, 0]));
+    expect(arms()).toHaveLength(1);
+    expect(arms()[0].visible).toBe(true);
+    const free = frame([0, 0, 0, 0]);
+    free.brain!.blades[0].parked = false;
+    brain.update(free);
+    expect(arms()[0].visible).toBe(false);
+  });
+});
+
+describe("pressure map", () => {
+  const map = { time: [0, 1, 2], bins: 2, bin_mm: 4, blades: [{ name: "spatula", pressure: [0, 0, 12, 3, 40, 5] }], rest: shape.rest.map((x) => 1000 * x), triangles: shape.triangles, peak: [0, 10, 40, 0], dose: [0, 0, 30, 0], dose_red: 225 };
+  it("is read where one points", () => {
+    expect(pressureAt(map, 0, 0.5, 0.25)).toEqual({ time: 1, mm: 2, mmHg: 12 });
+    expect(pressureAt(map, 0, 0.99, 0.75)).toEqual({ time: 2, mm: 6, mmHg: 5 });
+    expect(pressureAt(map, 0, 1, 0.5)).toBeNull();
+    expect(mapColour(0)).not.toEqual(mapColour(20));
+  });
+  it("says its largest pressure, and is left out where there was no brain", () => {
+    expect(pressureMapPanel(map)!.textContent).toContain("spatula: largest 40.0 mmHg");
+    expect(pressureMapPanel(undefined)).toBeNull();
   });
 });

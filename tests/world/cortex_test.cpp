@@ -40,6 +40,21 @@ TEST(Cortex, LipsOfTheFissureAreApartAndItsWallsCanBeTouched) {
   EXPECT_GT(std::abs(open.mesh.nodes(1, nearest)), 0.3e-3);
 }
 
+TEST(Cortex, AnOpenSideLeansOverTheBoneAndCanBeTouched) {
+  CortexShape shape;
+  shape.open_side = true;
+  shape.lean = 6e-3;
+  const Cortex c = make_cortex(shape, "cortex"), closed = make_cortex(CortexShape(), "cortex");
+  EXPECT_NO_THROW(check_mesh(c.mesh, "cortex"));
+  EXPECT_GT(c.surface.size(), closed.surface.size() + 100);
+  EXPECT_LT(c.held.size(), closed.held.size());
+  EXPECT_NEAR(c.mesh.nodes.row(1).minCoeff(), -6e-3, 1e-3);
+  EXPECT_LT(c.bone_y, c.mesh.nodes.row(1).minCoeff());
+  for (const int i : c.held) EXPECT_TRUE(c.mesh.nodes(2, i) > -0.999 * shape.size.z() || c.mesh.nodes(1, i) > -1e-9);  // upright below
+  shape.fissure_depth = 10e-3;
+  EXPECT_THROW(make_cortex(shape, "cortex"), InputError);
+}
+
 TEST(Cortex, HeldNodesAreTheBorderOnly) {
   const Cortex c = make_cortex(fissured(), "cortex");
   const std::set<int> held(c.held.begin(), c.held.end());

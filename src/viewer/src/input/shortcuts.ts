@@ -42,7 +42,7 @@ export const kShortcuts: ShortcutGroup[] = [
       { keys: "Ctrl", does: "clutch: move the mouse without moving the hand" },
       { keys: "P", does: "catch the mouse in the field (Esc lets go)" },
       { keys: "C", does: "cut" },
-      { keys: "N", does: "next" },
+      { keys: "N", does: "next; a spatula: lock or free its arm" },
       { keys: "Gamepad", does: "sticks: hands; triggers: grips; bumpers: depth; X: cut; A: next" },
     ],
   },

@@ -6,7 +6,7 @@ import type { BrainShape, BrainState, Frame } from "../messages";
 const kMm = 1000;
 export type PressureMode = "scale" | "threshold" | "off";
 /// How pressure is coloured; chosen in the panel, looked at by every drawing.
-export const pressureView: { mode: PressureMode; threshold: number } = { mode: "scale", threshold: 30 };
+export const pressureView: { mode: PressureMode; threshold: number; blind: boolean } = { mode: "scale", threshold: 30, blind: false };
 
 /// Okabe and Ito's colours, told apart with every common colour vision: mmHg and sRGB.
 export const kPressureStops: [number, [number, number, number]][] = [
@@ -59,6 +59,7 @@ export class Brain {
   private readonly cortex: THREE.Mesh<THREE.BufferGeometry>;
   private readonly tissue: Float32Array;
   private readonly blades: THREE.Group[] = [];
+  private readonly arms: RetractorArm[];
   private readonly veins: { mesh: THREE.Mesh; vertex: number; dura: THREE.Vector3 }[];
 
   constructor(shape: BrainShape, painted: boolean) {
@@ -77,6 +78,9 @@ export class Brain {
       this.blades.push(held);
       this.group.add(held);
     }
+    this.arms = shape.blades.map((blade, k) => new RetractorArm(shape, blade.grip, k, steel));
+    for (const arm of this.arms) this.group.add(arm.group);
+    if (shape.bone !== null) this.group.add(boneWall(shape));
     const blue = new THREE.MeshStandardMaterial({ color: 0x3a2a66, roughness: 0.35 });
     this.veins = shape.veins.map(({ vertex, dura }) => {
       const vein = new THREE.Mesh(new THREE.CylinderGeometry(0.7, 0.7, 1, 12), blue);
@@ -103,6 +107,7 @@ export class Brain {
       if (!pose) return;
       blade.position.set(pose.position[0], pose.position[1], pose.position[2]).multiplyScalar(kMm);
       blade.quaternion.set(pose.quaternion[1], pose.quaternion[2], pose.quaternion[3], pose.quaternion[0]);
+      this.arms[k].update(blade, state.blades[k]?.parked ?? false);
     });
     this.veins.forEach((vein, k) => this.stretch(vein, array, state.veins_torn[k] === 1));
   }
@@ -110,7 +115,7 @@ export class Brain {
   private colour(state: BrainState): void {
     const colour = this.cortex.geometry.getAttribute("color") as THREE.BufferAttribute, array = colour.array as Float32Array;
     for (let i = 0; i < state.pressure.length && 3 * i + 2 < array.length; ++i) {
-      const over = pressureColour(state.pressure[i], pressureView.mode, pressureView.threshold);
+      const over = pressureColour(state.pressure[i], pressureView.blind ? "off" : pressureView.mode, pressureView.threshold);
       for (let k = 0; k < 3; ++k) array[3 * i + k] = (1 - over.cover) * this.tissue[3 * i + k] + over.cover * over.colour[k];
     }
     colour.needsUpdate = true;
@@ -119,20 +124,68 @@ export class Brain {
   private stretch(vein: { mesh: THREE.Mesh; vertex: number; dura: THREE.Vector3 }, at: Float32Array, torn: boolean): void {
     const foot = new THREE.Vector3(at[3 * vein.vertex], at[3 * vein.vertex + 1], at[3 * vein.vertex + 2]);
     const end = torn ? foot.clone().lerp(vein.dura, 0.35) : vein.dura;
-    const span = end.clone().sub(foot), length = Math.max(0.1, span.length());
-    vein.mesh.position.copy(foot).addScaledVector(span, 0.5);
-    vein.mesh.scale.set(1, length, 1);
-    vein.mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), span.divideScalar(length));
+    span(vein.mesh, foot, end);
   }
+}
+
+/// The self-retaining arm: a jointed bar from the edge of the window to the blade's shank, there while the blade is held by it.
+class RetractorArm {
+  readonly group = new THREE.Group();
+  private readonly foot: THREE.Vector3;
+  private readonly bars: THREE.Mesh[];
+  private readonly joints: THREE.Mesh[];
+
+  constructor(shape: BrainShape, private readonly grip: number, blade: number, steel: THREE.Material) {
+    const { x, y } = extent(shape);
+    this.foot = new THREE.Vector3(0.75 * x * (blade % 2 === 0 ? 1 : -1), -1.05 * y, 5);
+    this.bars = [0, 1].map(() => new THREE.Mesh(new THREE.CylinderGeometry(1, 1, 1, 16), steel));
+    this.joints = [0, 1].map(() => new THREE.Mesh(new THREE.SphereGeometry(1.5, 20, 14), steel));
+    const clamp = new THREE.Mesh(new THREE.BoxGeometry(7, 5, 8), steel);
+    clamp.position.copy(this.foot);
+    this.group.add(...this.bars, ...this.joints, clamp);
+  }
+
+  update(blade: THREE.Group, parked: boolean): void {
+    this.group.visible = parked;
+    if (!parked) return;
+    const hold = new THREE.Vector3(0, 0, Math.min(kShown, this.grip) * kMm).applyQuaternion(blade.quaternion).add(blade.position);
+    const elbow = this.foot.clone().lerp(hold, 0.5).add(new THREE.Vector3(0, 0, 9));
+    span(this.bars[0], this.foot, elbow);
+    span(this.bars[1], elbow, hold);
+    this.joints[0].position.copy(elbow);
+    this.joints[1].position.copy(hold);
+  }
+}
+
+/// A bar of length one along y put between two points.
+function span(bar: THREE.Mesh, from: THREE.Vector3, to: THREE.Vector3): void {
+  const way = to.clone().sub(from), length = Math.max(0.1, way.length());
+  bar.position.copy(from).addScaledVector(way, 0.5);
+  bar.scale.set(1, length, 1);
+  bar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), way.divideScalar(length));
+}
+
+/// Half widths [mm] of the surface.
+function extent(shape: BrainShape): { x: number; y: number } {
+  let x = 0, y = 0;
+  for (let i = 0; i < shape.rest.length; i += 3) {
+    x = Math.max(x, Math.abs(shape.rest[i]) * kMm);
+    y = Math.max(y, Math.abs(shape.rest[i + 1]) * kMm);
+  }
+  return { x, y };
+}
+
+/// Bone beside an open side of the tissue, such as the orbital roof below a frontal lobe; its face is rough to the eye only.
+function boneWall(shape: BrainShape): THREE.Mesh {
+  const { x, y } = extent(shape), face = shape.bone! * kMm, depth = Math.min(40, 1.2 * y);
+  const wall = new THREE.Mesh(new THREE.BoxGeometry(2 * x, y + face, depth), new THREE.MeshLambertMaterial({ color: 0xdccfb2 }));
+  wall.position.set(0, 0.5 * (face - y), -0.5 * depth);
+  return wall;
 }
 
 /// The bone about the window: a frame around the block, for the eye only.
 function rim(shape: BrainShape): THREE.Mesh {
-  let halfX = 0, halfY = 0;
-  for (let i = 0; i < shape.rest.length; i += 3) {
-    halfX = Math.max(halfX, Math.abs(shape.rest[i]) * kMm);
-    halfY = Math.max(halfY, Math.abs(shape.rest[i + 1]) * kMm);
-  }
+  const { x: halfX, y: halfY } = extent(shape);
   const outline = new THREE.Shape([[-2, -2], [2, -2], [2, 2], [-2, 2]].map(([x, y]) => new THREE.Vector2(x * halfX, y * halfY)));
   outline.holes.push(new THREE.Path().absellipse(0, 0, halfX * 0.97, halfY * 0.97, 0, 2 * Math.PI, true));
   const bone = new THREE.Mesh(new THREE.ExtrudeGeometry(outline, { depth: 4, bevelEnabled: false, curveSegments: 48 }), new THREE.MeshLambertMaterial({ color: 0xe9dcc0 }));

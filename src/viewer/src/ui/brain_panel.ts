@@ -3,6 +3,7 @@
 import type { Frame, Scene } from "../messages";
 import { kPressureStops, pressureView, type PressureMode } from "../scene/brain";
 import { clock } from "./format";
+import { SectionView } from "./section_view";
 import { h, setAttribute, setText } from "./dom";
 
 const kModes: [PressureMode, string][] = [["scale", "Full scale"], ["threshold", "Red only"], ["off", "Off"]];
@@ -45,8 +46,12 @@ export class BrainPanel {
   private readonly seen = h("output", { class: "brainrow" }, "");
   private readonly note = h("p", { class: "note" }, "");
   private readonly modes: HTMLButtonElement[];
+  private readonly section: SectionView;
+  private readonly hidden = h("p", { class: "note" }, "By feel: the pressure is not shown in this step.");
+  private readonly shown: HTMLElement[]; // what a blind step hides
 
   constructor(scene: Scene, private readonly redraw: () => void) {
+    this.section = new SectionView(scene, redraw);
     this.rows = (scene.brain?.blades ?? []).map(() => h("output", { class: "brainrow" }, ""));
     this.modes = kModes.map(([mode, label]) => h("button", { class: "segment", onclick: () => this.choose(mode) }, label));
     const stops = kPressureStops.map(([at, colour]) => `${css(colour)} ${((100 * at) / 40).toFixed(0)}%`).join(", ");
@@ -54,8 +59,10 @@ export class BrainPanel {
     ramp.style.background = `linear-gradient(90deg, ${stops})`; // the page forbids style attributes, not properties
     const legend = h("div", { class: "brainlegend", role: "img", "aria-label": "Colours from 0 to 40 mmHg" },
       ramp, h("div", { class: "brainticks" }, ...["0", "10", "20", "30", "40 mmHg"].map((t) => h("span", {}, t))));
-    this.element.append(h("h2", {}, "Retraction"), this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows,
-      h("div", { class: "segments", role: "group", "aria-label": "Colours of the pressure" }, ...this.modes), this.note);
+    const colours = h("div", { class: "segments", role: "group", "aria-label": "Colours of the pressure" }, ...this.modes);
+    this.shown = [this.pressure.element, legend, this.dose.element, ...this.rows, colours, this.section.element];
+    this.hidden.hidden = true;
+    this.element.append(h("h2", {}, "Retraction"), this.hidden, this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows, colours, this.section.element, this.note);
     this.choose(pressureView.mode);
   }
 
@@ -65,8 +72,17 @@ export class BrainPanel {
     this.redraw();
   }
 
+  private blind(on: boolean): void {
+    if (pressureView.blind === on) return;
+    pressureView.blind = on;
+    this.hidden.hidden = !on;
+    for (const one of this.shown) one.hidden = on;
+  }
+
   show(frame: Frame, scene: Scene): void {
     const r = frame.task?.retraction, brain = frame.brain;
+    this.blind(r?.blind ?? false);
+    this.section.show(frame);
     if (r) {
       pressureView.threshold = r.bands[2];
       this.pressure.show(r.pressure, r.band, r.bands, r.alarm);
@@ -76,6 +92,6 @@ export class BrainPanel {
     }
     if (!brain) return;
     setText(this.seen, scene.brain?.target ? `Target seen: ${(100 * brain.exposed).toFixed(0)} %` : "");
-    brain.blades.forEach((blade, k) => setText(this.rows[k], `${scene.brain?.blades[k]?.name ?? "blade"}: ${blade.force.toFixed(2)} N on ${blade.area.toFixed(1)} cm², mean ${blade.mean.toFixed(0)}, tip ${blade.tip.toFixed(0)} mmHg${blade.parked ? ", on its arm" : ""}`));
+    brain.blades.forEach((blade, k) => setText(this.rows[k], `${scene.brain?.blades[k]?.name ?? "blade"}: ${blade.force.toFixed(2)} N on ${blade.area.toFixed(1)} cm², mean ${blade.mean.toFixed(0)}, tip ${blade.tip.toFixed(0)} mmHg${blade.parked ? (blade.keeps_force ? ", on its arm, which keeps the force" : ", on its arm") : ""}`));
   }
 }

@@ -117,8 +117,19 @@ export function knotPicture(knot: string, label: string, tools: boolean): SVGEle
   return field(post + round + knotPaths + jaws, label);
 }
 
+/// Cortex with its furrows and a spatula on it; two blades apart where the task opens a fissure.
+function brainPicture(label: string, blades: number): SVGElement {
+  const furrows = [-44, -30, -16, 0, 16, 30, 44].map((x, k) => `<path d="M${x} -58C${x + 9} -34 ${x - 10} -14 ${x + (k % 2 ? 6 : -6)} 8S${x + 8} 40 ${x - 2} 58" fill="none" stroke="#8d4a44" stroke-width="${k === 3 ? 4 : 2.2}"/>`).join("");
+  const vessels = `<path d="M-58 -8C-34 -20 -20 4 4 -6S38 -26 58 -12M-10 58C-16 34 6 26 2 2" fill="none" stroke="#a3262a" stroke-width="1.8"/>`;
+  const blade = (x: number, turn: number) => `<g transform="translate(${x} 6) rotate(${turn})"><path d="M-8 62V-6C-8 -18 8 -18 8 -6V62Z" fill="#METAL" stroke="#2b333b" stroke-width=".8"/></g>`;
+  return field(`<rect x="-60" y="-60" width="120" height="120" fill="#d9a79b"/>${furrows}${vessels}${blades === 2 ? blade(-15, 14) + blade(15, -14) : blade(10, -10)}`, label);
+}
+
+const kBlades: Record<string, number> = { "press-to-target": 1, "hold-exposure": 1, "deep-exposure": 1, "retractor-correction": 1, "sylvian-opening": 2 };
+
 /// Picture of a task by the name that the trainer gives.
 export function taskPicture(name: string, title: string): SVGElement {
+  if (kBlades[name]) return brainPicture(title, kBlades[name]);
   const knot = /^knot-(.+)$/.exec(name)?.[1];
   if (knot && kThrows[knot]) return knotPicture(knot, title, true);
   return knotPicture("", title, false);

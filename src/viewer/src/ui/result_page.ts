@@ -6,6 +6,7 @@ import { analysisPanel } from "./analysis_panel";
 import { h } from "./dom";
 import { clock, kKnotTitles, milliNewton, quantity, words } from "./format";
 import { PathPlot } from "./path_plot";
+import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
 import { chartsOf, drawChart } from "./plots";
 
@@ -56,6 +57,8 @@ export class ResultPage implements Page {
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
       this.curves(result));
+    const map = pressureMapPanel(result.pressure_map);
+    if (map) this.element.insertBefore(map, this.element.lastElementChild);
     if (!id) return;
     const panel = analysisPanel(id);
     this.element.append(panel.element);
