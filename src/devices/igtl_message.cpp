@@ -1,41 +1,32 @@
 #include "devices/igtl_message.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 
+#include <igtl_header.h>
+#include <igtl_tdata.h>
+#include <igtl_transform.h>
+#include <igtl_util.h>
+
 namespace filum {
 namespace {
 
-constexpr std::uint64_t kPolynomial = 0x42F0E1EBA9EA3693u;  // ECMA-182
-constexpr double kReach = 0.5;                              // [m]
+constexpr double kReach = 0.5;  // [m]
 
-constexpr std::array<std::uint64_t, 256> make_table() {
-  std::array<std::uint64_t, 256> table{};
-  for (std::uint64_t i = 0; i < 256; ++i) {
-    std::uint64_t crc = i << 56;
-    for (int b = 0; b < 8; ++b) crc = (crc & (1ull << 63)) ? (crc << 1) ^ kPolynomial : crc << 1;
-    table[i] = crc;
-  }
-  return table;
-}
-constexpr auto kTable = make_table();
+static_assert(sizeof(::igtl_header) == kIgtlHeader && sizeof(igtl_tdata_element) == kIgtlElement);
 
 std::uint64_t get(const std::uint8_t* p, int n) noexcept {
   std::uint64_t v = 0;
   for (int i = 0; i < n; ++i) v = (v << 8) | p[i];
   return v;
 }
-void put(std::uint8_t* p, std::uint64_t v, int n) noexcept {
-  for (int i = n - 1; i >= 0; --i, v >>= 8) p[i] = static_cast<std::uint8_t>(v);
-}
 
 }  // namespace
 
 std::uint64_t igtl_crc64(std::span<const std::uint8_t> data) noexcept {
-  std::uint64_t crc = 0;
-  for (const std::uint8_t byte : data) crc = kTable[(crc >> 56) ^ byte] ^ (crc << 8);
-  return crc;
+  return crc64(const_cast<unsigned char*>(data.data()), data.size(), 0);  // the library only reads
 }
 
 namespace detail {
@@ -58,10 +49,11 @@ bool igtl_content(const IgtlHeader& header, std::span<const std::uint8_t>& body)
 IgtlPose igtl_pose(std::string_view name, const std::uint8_t* bytes) noexcept {
   IgtlPose pose;
   pose.name = name;
-  double v[12];
-  for (int i = 0; i < 12; ++i) v[i] = std::bit_cast<float>(static_cast<std::uint32_t>(get(bytes + 4 * i, 4)));
+  float v[12];
+  std::memcpy(v, bytes, sizeof v);
+  igtl_transform_convert_byte_order(v);
   Mat3 R;
-  for (int i = 0; i < 9; ++i) R(i % 3, i / 3) = v[i];
+  for (int i = 0; i < 9; ++i) R(i % 3, i / 3) = static_cast<double>(v[i]);
   pose.X.p = 1e-3 * Vec3(v[9], v[10], v[11]);
   if (!R.allFinite() || !pose.X.p.allFinite() || pose.X.p.cwiseAbs().maxCoeff() > kReach) return pose;
   if (!((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff() < 0.01) || R.determinant() < 0.0) return pose;
@@ -74,31 +66,36 @@ IgtlPose igtl_pose(std::string_view name, const std::uint8_t* bytes) noexcept {
 
 bool igtl_header(std::span<const std::uint8_t> bytes, IgtlHeader& h) noexcept {
   if (bytes.size() < kIgtlHeader) return false;
-  h.version = static_cast<int>(get(bytes.data(), 2));
-  h.type = detail::igtl_text(bytes.data() + 2, 12);
-  h.device = detail::igtl_text(bytes.data() + 14, 20);
-  const std::uint64_t seconds = get(bytes.data() + 34, 4), fraction = get(bytes.data() + 38, 4);
+  ::igtl_header raw;
+  std::memcpy(&raw, bytes.data(), sizeof raw);
+  igtl_header_convert_byte_order(&raw);
+  h.version = raw.version;
+  h.type = detail::igtl_text(bytes.data() + offsetof(::igtl_header, name), IGTL_HEADER_TYPE_SIZE);
+  h.device = detail::igtl_text(bytes.data() + offsetof(::igtl_header, device_name), IGTL_HEADER_NAME_SIZE);
+  const std::uint64_t seconds = raw.timestamp >> 32, fraction = raw.timestamp & 0xffffffffu;
   h.time_us = static_cast<std::int64_t>(seconds * 1'000'000 + (fraction * 1'000'000 >> 32));
-  h.body_size = get(bytes.data() + 42, 8);
-  h.crc = get(bytes.data() + 50, 8);
+  h.body_size = raw.body_size;
+  h.crc = raw.crc;
   return h.version >= 1 && h.version <= 3 && !h.type.empty();
 }
 
 std::size_t igtl_transform(std::string_view device, const Pose& X, std::int64_t time_us, std::span<std::uint8_t> out) noexcept {
   if (out.size() < kIgtlTransform) return 0;
-  std::memset(out.data(), 0, kIgtlTransform);
-  put(out.data(), 1, 2);
-  std::memcpy(out.data() + 2, "TRANSFORM", 9);
-  std::memcpy(out.data() + 14, device.data(), std::min<std::size_t>(device.size(), 19));
-  put(out.data() + 34, static_cast<std::uint64_t>(time_us / 1'000'000), 4);
-  put(out.data() + 38, (static_cast<std::uint64_t>(time_us % 1'000'000) << 32) / 1'000'000, 4);
-  put(out.data() + 42, 48, 8);
   const Mat3 R = X.q.toRotationMatrix();
-  for (int i = 0; i < 12; ++i) {
-    const double v = i < 9 ? R(i % 3, i / 3) : 1e3 * X.p[i - 9];
-    put(out.data() + kIgtlHeader + 4 * i, std::bit_cast<std::uint32_t>(static_cast<float>(v)), 4);
-  }
-  put(out.data() + 50, igtl_crc64(out.subspan(kIgtlHeader, 48)), 8);
+  float v[12];
+  for (int i = 0; i < 12; ++i) v[i] = static_cast<float>(i < 9 ? R(i % 3, i / 3) : 1e3 * X.p[i - 9]);
+  igtl_transform_convert_byte_order(v);
+  ::igtl_header raw{};
+  raw.version = 1;
+  std::memcpy(raw.name, "TRANSFORM", 9);
+  std::memcpy(raw.device_name, device.data(), std::min<std::size_t>(device.size(), IGTL_HEADER_NAME_SIZE - 1));
+  const auto seconds = static_cast<std::uint64_t>(time_us / 1'000'000), rest = static_cast<std::uint64_t>(time_us % 1'000'000);
+  raw.timestamp = seconds << 32 | (rest << 32) / 1'000'000;
+  raw.body_size = IGTL_TRANSFORM_SIZE;
+  raw.crc = igtl_transform_get_crc(v);
+  igtl_header_convert_byte_order(&raw);
+  std::memcpy(out.data(), &raw, sizeof raw);
+  std::memcpy(out.data() + sizeof raw, v, sizeof v);
   return kIgtlTransform;
 }
 

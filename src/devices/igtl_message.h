@@ -1,8 +1,8 @@
 #pragma once
 // OpenIGTLink messages (protocol version 3; J. Tokuda et al., Int. J. Med. Robotics 5 (2009) 423), as far as tool poses need
-// them: TRANSFORM and TDATA in, TRANSFORM out. Pure: bytes in, poses out. Our own few lines rather than the library, because
-// the bytes come from the network: nothing is allocated by a length that a peer names. tests/devices/igtl_library_test checks
-// both ways against Debian's library.
+// them: TRANSFORM and TDATA in, TRANSFORM out. Pure: bytes in, poses out. The layouts, byte orders and checksums are the C part of
+// libOpenIGTLink; not its classes, because the bytes come from the network: nothing is allocated by a length that a peer names.
+// tests/devices/igtl_library_test checks both ways against the classes.
 //
 // Header, big-endian, 58 bytes: version u16, type char[12], device char[20], time u64 (seconds 32.32), body size u64, CRC-64
 // (ECMA-182) of the body. Version 2 bodies begin with an extended header and end with metadata. Lengths in millimetres.
@@ -26,6 +26,7 @@ struct IgtlHeader {
 };
 
 inline constexpr std::size_t kIgtlHeader = 58;     // [byte]
+inline constexpr std::size_t kIgtlElement = 70;    // [byte], of one tool in TDATA
 inline constexpr std::size_t kIgtlLongest = 65536; // [byte], of a body that is read; poses need a few hundred
 
 std::uint64_t igtl_crc64(std::span<const std::uint8_t> data) noexcept;
@@ -61,14 +62,13 @@ IgtlBody igtl_body(const IgtlHeader& header, std::span<const std::uint8_t> body,
   if (body.size() != header.body_size || igtl_crc64(body) != header.crc) return IgtlBody::damaged;
   if (header.type != "TRANSFORM" && header.type != "TDATA") return IgtlBody::other;
   if (!detail::igtl_content(header, body)) return IgtlBody::damaged;
-  constexpr std::size_t kElement = 70;
   if (header.type == "TRANSFORM") {
     if (body.size() != 48) return IgtlBody::damaged;
     take(detail::igtl_pose(header.device, body.data()));
     return IgtlBody::poses;
   }
-  if (body.size() % kElement != 0) return IgtlBody::damaged;
-  for (std::size_t at = 0; at < body.size(); at += kElement)
+  if (body.size() % kIgtlElement != 0) return IgtlBody::damaged;
+  for (std::size_t at = 0; at < body.size(); at += kIgtlElement)
     take(detail::igtl_pose(detail::igtl_text(body.data() + at, 20), body.data() + at + 22));
   return IgtlBody::poses;
 }

@@ -35,10 +35,11 @@ read -r flooded heard <"$work/peers.out"
 [ "$flooded" -gt 1000 ] || fail "no flood: $flooded packets"
 [ "$heard" -gt 20 ] || fail "only $heard poses were heard by OpenIGTLink"
 "$filum" export "$work/session" --format csv --out "$work/csv" >/dev/null 2>"$work/export.err" || fail "export"
+# The hand starts with a step to its circle of 4 mm: one that swings goes no further than twice that.
 node -e '
   const rows = require("fs").readFileSync(process.argv[1] + "/samples.csv", "utf8").split("\n").filter((l) => l && !l.startsWith("#")), head = rows[0].split(",");
   const at = (name) => head.findIndex((h) => h.split(" ")[0] === name), x = rows.slice(1).map((r) => Number(r.split(",")[at("p_x")]));
-  if (!(x.length > 2000 && x.every((v) => Math.abs(v) < 6e-3))) { console.error("samples", x.length, Math.max(...x)); process.exit(1); }
+  if (!(x.length > 2000 && x.every((v) => Math.abs(v) < 8e-3))) { console.error("samples", x.length, Math.max(...x)); process.exit(1); }
   console.log(`${x.length} samples of the hand`);' "$work/csv" >"$work/samples.out" || fail "samples: $(ls "$work/csv"; head -2 "$work/csv"/samples*)"
 "$filum" replay "$work/session" --json | grep -q '"identical":true' || fail "the replay differs"
 echo "haptic_run_test: $(cat "$work/samples.out"); flooded with $flooded packets; $heard poses by OpenIGTLink; $(cat "$work/client.out")"

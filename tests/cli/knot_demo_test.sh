@@ -1,27 +1,27 @@
 #!/bin/bash
-# The demonstrations of knots, by device poses only: each must be called what it is, the square knot's ends must be cut and its recording replay
-# bit for bit, and the granny must not pass. Usage: knot_demo_test.sh FILUM ROOT
+# The demonstrations of knots, by device poses only: each must be called what it is; the square and the surgeon's knot must be cut, hold and pass,
+# the square knot's recording replay bit for bit, and the granny must not pass. Usage: knot_demo_test.sh FILUM ROOT
 filum=$1 root=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "knot_demo_test: $*"; head -c 3000 "$work"/run.json; exit 1; }
 cd "$root" || exit 1
 
-# tied KNOT CLASS THROWS CUTS [option ...]: runs the demonstration of KNOT and looks at what was tied.
+# tied KNOT CLASS THROWS CUTS PASSES [option ...]: runs the demonstration of KNOT and looks at what was tied.
 tied() {
-  local knot=$1 class=$2 throws=$3 cuts=$4
-  shift 4
+  local knot=$1 class=$2 throws=$3 cuts=$4 passes=$5
+  shift 5
   "$filum" run "$knot" --input demo --json "$@" >"$work/run.json" 2>"$work/run.err" || fail "$knot: $(cat "$work/run.err")"
   node -e '
-    const [file, wanted, throws, cuts] = process.argv.slice(1);
+    const [file, wanted, throws, cuts, passes] = process.argv.slice(1);
     const d = JSON.parse(require("fs").readFileSync(file));
     const count = (name) => d.events.filter((e) => e.name === name).length;
-    if (d.knot.class !== wanted || count("throw-laid") < Number(throws) || count("cut") !== Number(cuts) || (d.passed && wanted === "granny")) { console.error(d.knot, d.events, d.passed); process.exit(1); }
-  ' "$work/run.json" "$class" "$throws" "$cuts" || fail "$knot: not $class"
+    if (d.knot.class !== wanted || count("throw-laid") < Number(throws) || count("cut") !== Number(cuts) || String(d.passed) !== passes) { console.error(d.knot, d.events, d.passed); process.exit(1); }
+  ' "$work/run.json" "$class" "$throws" "$cuts" "$passes" || fail "$knot: not $class"
 }
 
-tied knot-granny granny 2 0
-tied knot-surgeons surgeons 2 2
-tied knot-square square 2 2 --record "$work/knot.filum"
+tied knot-granny granny 2 0 false
+tied knot-surgeons surgeons 2 2 true
+tied knot-square square 2 2 true --record "$work/knot.filum"
 "$filum" replay "$work/knot.filum" --json >"$work/replay.json" || fail "replay: $(cat "$work/replay.json")"
 grep -q '"identical": *true' "$work/replay.json" || fail "replay differs: $(cat "$work/replay.json")"

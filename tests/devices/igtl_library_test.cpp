@@ -1,4 +1,4 @@
-// Our few lines of OpenIGTLink against Debian's library, both ways over loopback.
+// Our poses by OpenIGTLink against the library's own classes, both ways over loopback.
 #include <gtest/gtest.h>
 
 #include <chrono>

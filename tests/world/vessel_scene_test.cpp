@@ -88,7 +88,7 @@ TEST(VesselScene, SurvivesWildHands) {
       ASSERT_TRUE(s.thread.x.leftCols(s.thread.n).allFinite() && s.tissue.wall.x.allFinite()) << seed << ' ' << k;
     }
     const Observation& o = w.observation();
-    EXPECT_LT(o.needle.X_WN.p.norm(), 50e-3) << "seed " << seed;
+    EXPECT_LT(o.needle.X_WN.p.norm(), 100e-3) << "whipped by its thread to 0.7 m/s it flies v^2/g = 50 mm; what blows up goes further, seed " << seed;
     EXPECT_LT((o.positions.col(o.n_nodes - 1) - o.needle.swage_W).norm(), 20e-6) << "thread and needle are joined still, seed " << seed;
     EXPECT_LT(o.tissue.positions.cwiseAbs().maxCoeff(), 10e-3) << "the card is where its frame is, seed " << seed;
   }
