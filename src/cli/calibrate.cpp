@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -13,6 +12,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/utc_stamp.h"
 #include "cli/options.h"
 #include "devices/calibration_file.h"
 #include "devices/calibration_guide.h"
@@ -82,15 +82,6 @@ CalibrationReadings readings_from_port(const CalibrateOptions& o) {
   return readings;
 }
 
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[16];
-  std::strftime(text, sizeof text, "%Y-%m-%d", &utc);
-  return text;
-}
-
 nlohmann::ordered_json fit_json(const CalibrationFit& f, const std::string& unit) {
   return {{"good", f.good}, {"why", f.why}, {"gain", f.gain}, {"zero", f.zero}, {"unit", unit}, {"uncertainty", f.uncertainty},
           {"residual", f.residual}, {"hysteresis", f.hysteresis}, {"repeatability", f.repeatability}, {"from", f.from}, {"to", f.to}};
@@ -114,7 +105,7 @@ int run(const CalibrateOptions& o) {
   const CalibrationFit force = fit_line(readings.force, {}, "N", 1.0);
   const bool good = angle.good && force.good;
   if (good) {
-    const CalibrationHeader header{o.name, o.sensor, today(), o.identity, 1.2 * std::max(-angle.from, angle.to), 1.2 * force.to};
+    const CalibrationHeader header{o.name, o.sensor, utc_stamp("%Y-%m-%d"), o.identity, 1.2 * std::max(-angle.from, angle.to), 1.2 * force.to};
     std::ofstream file(o.out);
     file << calibration_text(header, readings, angle, force);
     if (!file.flush()) throw InputError("calibrate", "--out", o.out, "a file that can be written");

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "base/error.h"
+#include "base/utc_stamp.h"
 #include "devices/serial_forceps.h"
 #include "haptics/haptic_loop.h"
 
@@ -21,15 +21,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::chrono::milliseconds kSilent{500};
 constexpr std::chrono::seconds kPatience{5};  // for the half second of samples that a reading takes
-
-std::string stamp(const char* format) {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, format, &utc);
-  return text;
-}
 
 Json fit_json(const CalibrationFit& f, double scale, const char* unit) {
   Json residuals = Json::array();
@@ -169,8 +160,8 @@ void CalibrationSession::finish() {
   if (!angle_.good || !force_.good) return;
   std::error_code error;
   std::filesystem::create_directories(plan_.folder, error);
-  const std::string path = plan_.folder + "/" + plan_.name + "-" + stamp("%Y%m%d-%H%M%S") + ".yaml";
-  const CalibrationHeader header{plan_.name, plan_.sensor, stamp("%Y-%m-%d"), plan_.identity, 1.2 * std::max(-angle_.from, angle_.to), 1.2 * force_.to};
+  const std::string path = plan_.folder + "/" + plan_.name + "-" + utc_stamp("%Y%m%d-%H%M%S") + ".yaml";
+  const CalibrationHeader header{plan_.name, plan_.sensor, utc_stamp("%Y-%m-%d"), plan_.identity, 1.2 * std::max(-angle_.from, angle_.to), 1.2 * force_.to};
   std::ofstream file(path);
   file << calibration_text(header, readings, angle_, force_);
   if (file.flush()) file_ = path;

@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <condition_variable>
-#include <ctime>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/exchange.h"
+#include "base/utc_stamp.h"
 #include "session/block_writer.h"
 #include "session/database.h"
 
@@ -236,13 +236,6 @@ const std::string& Recorder::file() const {
   return impl_->options.file;
 }
 
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
+std::string utc_now() { return utc_stamp("%Y-%m-%dT%H:%M:%SZ"); }
 
 }  // namespace filum

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -16,6 +15,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/utc_stamp.h"
 #include "tracker/camera_guide.h"
 #include "tracker/picture_source.h"
 
@@ -26,15 +26,6 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kEvery{150};  // between two states
 constexpr int kPreviewAcross = 480;               // [px]
-
-std::string stamp(const char* format) {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[32];
-  std::strftime(text, sizeof text, format, &utc);
-  return text;
-}
 
 /// Lines of standard input as they come.
 class Commands {
@@ -107,8 +98,8 @@ class GuideProgram {
     try {
       CameraModel camera = guide_.calibrate();
       camera.camera = options_.camera;
-      camera.date = stamp("%Y-%m-%d");
-      const std::string path = options_.folder + "/camera-" + stamp("%Y%m%d-%H%M%S") + ".yaml";
+      camera.date = utc_stamp("%Y-%m-%d");
+      const std::string path = options_.folder + "/camera-" + utc_stamp("%Y%m%d-%H%M%S") + ".yaml";
       std::ofstream file(path);
       file << camera.text();
       if (!file.flush()) throw InputError(path, "file", "a write error", "a folder that can be written");
