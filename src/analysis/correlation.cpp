@@ -83,7 +83,7 @@ Correlation correlate_within(const std::vector<PairGroup>& groups) {
   }
   c.n = static_cast<int>(x.size());
   const double degrees = c.n - c.groups - 1.0;
-  if (degrees < 2.0) return none(c, "too few windows within sessions");
+  if (degrees < 2.0) return none(c, "too few pairs within sessions");
   c = from_moments(c, x, y, degrees - 1.0);
   c.rank = kNaN;
   return c;

@@ -7,6 +7,7 @@ namespace filum {
 namespace {
 
 constexpr std::uint32_t kForceSaturated = 0x200;  // bit of SampleRecord::buttons, as devices/sample_faults.h sets it
+constexpr std::uint32_t kForeignCalibration = 0x1000;
 
 /// Scene time of a host time: scripts and replays stamp their samples with the scene's own time, hands with the host's.
 class SceneClock {
@@ -60,6 +61,7 @@ void read_samples(const RecordingReader& recording, const SceneClock& scene, std
       grip.clock.push_back(clock);
       grip.scene.push_back(at);
       grip.force.push_back(s.grip_force);
+      grip.foreign = grip.foreign || (s.buttons & kForeignCalibration) != 0;
       grip.saturated += (s.buttons & kForceSaturated) != 0 ? 1 : 0;
     }
   }

@@ -27,6 +27,7 @@ struct TimedForce {
   std::vector<double> clock, scene;  // [s]
   std::vector<double> force;         // [N]
   std::string source = "none";       // "device", "simulation" or "none"
+  bool foreign = false;              // the handle was calibrated by another file than the one in use: forces may be wrong
   std::size_t saturated = 0;         // readings at the end of the amplifier's range: the true force may be larger
 };
 

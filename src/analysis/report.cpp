@@ -2,47 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "analysis/noise_floor.h"
+#include "analysis/study.h"
 #include "training/metrics.h"
 
 namespace filum {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSmoothnessRate = 100.0;  // [Hz]
-constexpr double kAntiAlias = 40.0;        // [Hz]
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 // ---- tremor
-
-/// A script has no sensor: what it says is exact, and so its noise floor is zero.
-bool is_script(const RecordedSession& session) { return session.meta.input.starts_with("demonstrat"); }
-
-const ToolSeries* tool_of(const RecordedSession& session, int tool) {
-  for (const ToolSeries& t : session.tools)
-    if (t.tool == tool) return &t;
-  return nullptr;
-}
-
-struct Floor {
-  std::optional<EvenPath> path;
-  std::string source;
-};
-
-Floor floor_for(const AnalysisInput& input, const RecordedSession& session, int tool, bool hand, const EvenPath& path) {
-  if (input.clamped) {
-    const ToolSeries* clamped = tool_of(*input.clamped, tool);
-    if (!clamped) return {std::nullopt, "the clamped recording does not hold this tool"};
-    return {(hand ? clamped->hand : clamped->scene).even(), "clamped tool: " + input.clamped->file};
-  }
-  if (!is_script(session)) return {std::nullopt, "not measured"};
-  EvenPath zero = path;
-  for (Points& p : zero.stretches) p.setZero();
-  return {zero, "zero: a script has no sensor"};
-}
 
 Json band_json(const TremorBand& band) {
   Json json = {{"from_hz", band.from},
@@ -66,7 +39,7 @@ Json spectrum_json(const Spectrum& s) {
   return {{"frequency_hz", frequency}, {"density_m2_per_hz", density}};
 }
 
-Json tremor_json(const Tremor& t, const EvenPath& path, const Floor& floor) {
+Json tremor_json(const Tremor& t, const EvenPath& path, const NoiseFloor& floor) {
   Json json = {{"measured", t.measured},
                {"resolved", t.resolved()},
                {"rate_hz", finite(path.fs)},
@@ -103,7 +76,7 @@ Json all_tremor(const AnalysisInput& input, const RecordedSession& session, cons
     for (const Window& window : windows_of(tool, session.seconds)) {
       for (const bool hand : {true, false}) {
         const EvenPath path = (hand ? tool.hand : tool.scene).cut(window.from, window.to).even();
-        const Floor floor = floor_for(input, session, tool.tool, hand, path);
+        const NoiseFloor floor = noise_floor(session, input.clamped ? &*input.clamped : nullptr, tool.tool, hand, path);
         Json json = {{"tool", tool.tool}, {"space", hand ? "hand" : "scene"}, {"window", window.name},
                      {"from_s", window.from}, {"to_s", window.to}};
         if (tool.holds.empty()) json["note"] = "no hold in this session: voluntary movement is in the bands";
@@ -127,7 +100,7 @@ std::pair<Points, double> slow_path(const EvenPath& path) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> x(static_cast<std::size_t>(p.cols()));
     for (Eigen::Index k = 0; k < p.cols(); ++k) x[static_cast<std::size_t>(k)] = p(axis, k);
-    if (every > 1) x = low_pass(x, path.fs, kAntiAlias);
+    if (every > 1) x = low_pass(x, path.fs, kSmoothnessAntiAlias);
     for (Eigen::Index k = 0; k < slow.cols(); ++k) slow(axis, k) = x[static_cast<std::size_t>(k * every)];
   }
   return {slow, path.fs / static_cast<double>(every)};
@@ -217,6 +190,7 @@ Json force_json(const ToolSeries& tool, const std::optional<GraspBands>& bands, 
     return json;
   }
   json["saturated_share"] = tool.grip.force.empty() ? 0.0 : static_cast<double>(tool.grip.saturated) / static_cast<double>(tool.grip.force.size());
+  if (tool.grip.foreign) json["warning"] = "recorded with the calibration of another handle: openings and forces may be wrong";
   json["summary"] = grasp_summary(grasps);
   if (bands) {
     const GraspErrors errors = errors_of(grasps, *bands);
@@ -238,107 +212,17 @@ Json force_json(const ToolSeries& tool, const std::optional<GraspBands>& bands, 
 
 // ---- correlation
 
-/// What is known of one window: NaN where it was not measured.
-struct WindowValues {
-  double force = kNaN, accuracy = kNaN, tremor = kNaN;  // [N], [m], [m]
-};
-
-double mean_force(const TimedForce& g, double from, double to) {
-  double sum = 0.0, n = 0.0;
-  const auto first = std::lower_bound(g.scene.begin(), g.scene.end(), from) - g.scene.begin();
-  for (auto k = static_cast<std::size_t>(first); k < g.scene.size() && g.scene[k] < to; ++k, n += 1.0) sum += g.force[k];
-  return n > 0.0 ? sum / n : kNaN;
-}
-
-double target_error(const ToolSeries& tool, double from, double to) {
-  double square = 0.0, n = 0.0;
-  for (const auto& [time, error] : tool.target_error) {
-    if (time < from || time >= to) continue;
-    square += error * error;
-    n += 1.0;
-  }
-  return n > 0.0 ? std::sqrt(square / n) : kNaN;
-}
-
-std::vector<WindowValues> window_values(const RecordedSession& session, const AnalysisOptions& o) {
-  std::vector<WindowValues> all;
-  for (const ToolSeries& tool : session.tools) {
-    if (tool.target_error.empty() && tool.grip.force.empty()) continue;
-    for (double from = 0.0; from + o.window <= session.seconds; from += o.window) {
-      WindowValues v;
-      v.force = mean_force(tool.grip, from, from + o.window);
-      v.accuracy = target_error(tool, from, from + o.window);
-      const EvenPath path = tool.hand.cut(from, from + o.window).even();
-      TremorOptions once = o.tremor;
-      once.shortest = 0.9 * o.window;
-      once.welch.segment = 0.45 * o.window;
-      const Tremor t = tremor_of(path, std::nullopt, once);
-      if (t.measured && !std::isnan(v.accuracy)) v.tremor = std::sqrt(t.bands[1].power.value);
-      all.push_back(v);
-    }
-  }
-  return all;
-}
-
-Json correlation_json(const Correlation& c, bool within) {
-  Json json = {{"n", c.n}, {"r", finite(c.r)}, {"low_95", finite(c.low)}, {"high_95", finite(c.high)},
-               {"r_squared", finite(c.r * c.r)}, {"slope", finite(c.slope)}};
-  if (within) json["sessions"] = c.groups;
-  if (!within) json["spearman"] = finite(c.rank);
-  if (!c.why.empty()) json["why"] = c.why;
-  return json;
-}
-
-ScatterPanel panel_for(const std::vector<std::vector<WindowValues>>& sessions, double WindowValues::*x, double WindowValues::*y,
-                       const char* x_label, const char* y_label) {
-  ScatterPanel panel{x_label, y_label, {}, {}, {}};
-  std::vector<double> mean_x, mean_y;
-  for (const auto& windows : sessions) {
-    PairGroup group;
-    for (const WindowValues& v : windows) {
-      if (std::isnan(v.*x) || std::isnan(v.*y)) continue;
-      group.x.push_back(v.*x);
-      group.y.push_back(v.*y);
-    }
-    if (!group.x.empty()) {
-      double sx = 0.0, sy = 0.0;
-      for (std::size_t k = 0; k < group.x.size(); ++k) sx += group.x[k], sy += group.y[k];
-      mean_x.push_back(sx / static_cast<double>(group.x.size()));
-      mean_y.push_back(sy / static_cast<double>(group.x.size()));
-    }
-    panel.groups.push_back(std::move(group));
-  }
-  panel.within = correlate_within(panel.groups);
-  panel.across = correlate(mean_x, mean_y);
-  return panel;
-}
-
 Json all_correlations(const AnalysisInput& input, const AnalysisOptions& o, std::vector<ScatterPanel>& panels) {
-  std::vector<std::vector<WindowValues>> sessions;
-  for (const RecordedSession& session : input.sessions) sessions.push_back(window_values(session, o));
-  panels.push_back(panel_for(sessions, &WindowValues::force, &WindowValues::accuracy, "grasp force [N]", "distance from the target [m]"));
-  panels.push_back(panel_for(sessions, &WindowValues::force, &WindowValues::tremor, "grasp force [N]", "tremor 6-12 Hz [m]"));
-  panels.push_back(panel_for(sessions, &WindowValues::tremor, &WindowValues::accuracy, "tremor 6-12 Hz [m]", "distance from the target [m]"));
-  const char* names[] = {"force_accuracy", "force_tremor", "tremor_accuracy"};
+  std::vector<StudySession> sessions;
+  for (const RecordedSession& session : input.sessions) sessions.push_back(study_session(session, input.clamped ? &*input.clamped : nullptr, o));
   Json json;
-  for (std::size_t i = 0; i < panels.size(); ++i)
-    json[names[i]] = {{"within", correlation_json(panels[i].within, true)}, {"across", correlation_json(panels[i].across, false)}};
-  json["note"] = "windows of one session follow one another: the interval within is narrower than it should be; tremor is as measured, with the device's noise";
+  for (const StudyPair& pair : study_pairs(sessions)) {
+    panels.push_back(pair.panel);
+    json[pair.name] = {{"within", correlation_json(pair.windows)}, {"across", correlation_json(pair.sessions)},
+                       {"within_people", correlation_json(pair.within_people)}, {"people", correlation_json(pair.people)}};
+  }
+  json["note"] = "parts of one session follow one another: the interval within is narrower than it should be; tremor is free of the device's noise floor and counts only where it stands out of it";
   return json;
-}
-
-Json settings_json(const AnalysisOptions& o) {
-  return {{"psd", "Welch, Hann window, half overlap, segments freed of their straight line, axes added"},
-          {"segment_s", o.tremor.welch.segment},
-          {"confidence", o.tremor.welch.confidence},
-          {"high_pass_hz", o.tremor.high_pass},
-          {"speed_low_pass_hz", 20.0},
-          {"sparc_fc_hz", 10.0},
-          {"sparc_amplitude", 0.05},
-          {"anti_alias_hz", kAntiAlias},
-          {"grasp_threshold_n", o.grasp.threshold},
-          {"grasp_low_pass_hz", o.grasp.cut_off},
-          {"correlation_window_s", o.window}};
 }
 
 Json session_json(const AnalysisInput& input, const RecordedSession& session, const std::optional<GraspBands>& bands,

@@ -7,17 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "analysis/options.h"
 #include "analysis/recorded_series.h"
 #include "analysis/scatter_plot.h"
-#include "analysis/tremor.h"
 
 namespace filum {
-
-struct AnalysisOptions {
-  TremorOptions tremor;
-  GraspOptions grasp;
-  double window = 4.0;  // [s], of the pairs correlated within a session
-};
 
 struct AnalysisInput {
   std::vector<RecordedSession> sessions;

@@ -9,18 +9,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '&') out += "&amp;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
-  }
-  return out;
-}
-
 std::string number(const Json& value, double scale = 1.0) {
   if (!value.is_number()) return "-";
   char text[32];
@@ -111,6 +99,8 @@ std::string force_html(const Json& list) {
     html += cell(e.contains("why") ? escaped(e["why"].get<std::string>()) : number(e["high"]) + ", " + number(e["low"]) + ", " + number(e["variable"])) + "</tr>";
   }
   html += "</table>";
+  for (const Json& f : list)
+    if (f.contains("warning")) html += "<p class=\"refused\">Tool " + number(f["tool"]) + ": " + escaped(f["warning"].get<std::string>()) + ".</p>";
   for (const Json& f : list)
     if (f.value("saturated_share", 0.0) > 0.0)
       html += "<p class=\"refused\">Tool " + number(f["tool"]) + ": " + number(f["saturated_share"], 100.0) + " % of the readings at the end of the amplifier's range: peaks are larger than shown.</p>";

@@ -118,7 +118,7 @@ Tremor tremor_of(const EvenPath& path, const std::optional<EvenPath>& clamped, c
   result.peak = peak_between(result.spectrum, 4.0, std::min(20.0, 0.45 * path.fs));
   const Spectrum whole = spectrum_of(path, o, 0.0);
   result.relative_power = band_power(whole, 8.0, 12.0).value / band_power(whole, 0.5, 25.0).value;
-  std::string no_floor = "noise floor not measured: record the clamped tool and name it with --clamped";
+  std::string no_floor = "noise floor not measured: record the same device with its tool clamped and name that recording (--clamped)";
   std::optional<Spectrum> floor;
   if (clamped) {
     no_floor = why_not(*clamped, o);

@@ -77,6 +77,7 @@ InputDevices open_hands(const std::string& input, double motion_scale, const std
     const std::size_t plus = std::min(input.find('+', from), input.size());
     auto device = open_hand_device(input.substr(from, plus - from), calibration);
     if (!device) throw InputError("--input", "input", input.substr(from, plus - from), "serial:PATH, haptic:PORT or igtl:PORT");
+    if (input.compare(from, 7, "serial:") == 0) result.calibration = calibration;
     result.description += (result.description.empty() ? "" : " and ") + device->name();
     result.devices.push_back(std::move(device));
     from = plus + 1;
@@ -126,6 +127,7 @@ InputDevices open_live_inputs(const LiveDevices& devices, const std::string& roo
     result = open_hands(devices.hands, devices.motion_scale, calibration);
     if (devices.serial_port.empty()) return result;
     result.devices.push_back(open_forceps(devices.serial_port, calibration));
+    result.calibration = calibration;
     result.description += " and serial " + devices.serial_port;
     return result;
   }
@@ -134,6 +136,7 @@ InputDevices open_live_inputs(const LiveDevices& devices, const std::string& roo
   result.description = "pointer";
   if (!devices.serial_port.empty()) {
     result.devices.push_back(open_forceps(devices.serial_port, calibration));
+    result.calibration = calibration;
     result.description = "serial " + devices.serial_port + " and pointer";
   }
   result.devices.push_back(std::move(pointer));

@@ -15,6 +15,7 @@ struct InputDevices {
   std::vector<std::unique_ptr<Device>> devices;
   bool scripted = false;             // they follow the scene's clock, whatever the speed
   std::string description;           // for the recording: "demonstrator", "serial /dev/ttyACM0"
+  std::string calibration;           // file of the forceps, empty: none are read
   MotionScale scale;                 // from the hand's space to the scene's
   PointerDevice* pointer = nullptr;  // one of `devices`, if there is one
 };

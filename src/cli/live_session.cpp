@@ -164,18 +164,21 @@ void LiveSession::score(const Observation& observation) {
 
 void LiveSession::store_events() {
   const auto& events = task_.events();
-  for (; events_stored_ < events.size(); ++events_stored_) {
-    const TaskEvent& e = events[events_stored_];
-    if (options_.recorder != nullptr) options_.recorder->record_event({scored_.step, e.time, e.name, e.tool, e.value, e.unit});
-    if (options_.show_event) options_.show_event(e);
-  }
+  for (; events_stored_ < events.size(); ++events_stored_) store_event(events[events_stored_]);
+}
+
+void LiveSession::store_event(const TaskEvent& e) {
+  if (options_.recorder != nullptr) options_.recorder->record_event({scored_.step, e.time, e.name, e.tool, e.value, e.unit});
+  if (options_.show_event) options_.show_event(e);
 }
 
 void LiveSession::store_samples() {
   DeviceSample sample;
   while (hands_->samples().pop(sample)) {
     if (options_.recorder != nullptr) options_.recorder->record_sample(sample_record(sample));
+    handles_.take(sample, scored_.time);
   }
+  for (; handle_events_stored_ < handles_.events().size(); ++handle_events_stored_) store_event(handles_.events()[handle_events_stored_]);
 }
 
 void LiveSession::show(const Observation& observation) {
@@ -183,7 +186,16 @@ void LiveSession::show(const Observation& observation) {
   if (!options_.show || now < next_show_us_) return;
   next_show_us_ = now + kShowEvery;
   const TaskStatus status = task_.status();
-  options_.show({observation, status, hands_->report().read(), device_names_});
+  options_.show({observation, status, hands_->report().read(), device_names_, handles_.warnings(observation.time)});
+}
+
+/// Among the task's events, where they belong in time.
+Result LiveSession::with_handle_events(Result result) const {
+  for (const TaskEvent& e : handles_.events()) {
+    const auto after = std::upper_bound(result.events.begin(), result.events.end(), e.time, [](double time, const TaskEvent& other) { return time < other.time; });
+    result.events.insert(after, e);
+  }
+  return result;
 }
 
 // ---- the caller's thread
@@ -194,7 +206,7 @@ LiveOutcome LiveSession::end() {
   if (failure_) std::rethrow_exception(failure_);
   pointer_ = nullptr;
   hands_.reset();
-  outcome_.result = task_.finish();
+  outcome_.result = with_handle_events(task_.finish());
   const Observation& o = world_.observation();
   outcome_.steps = o.step;
   outcome_.scene_seconds = o.time;
@@ -206,7 +218,7 @@ LiveOutcome LiveSession::end() {
 }
 
 Result LiveSession::settle(const std::function<bool(double)>& go_on) {
-  const Result r = finish_with_security(task_, world_, go_on);
+  const Result r = with_handle_events(finish_with_security(task_, world_, go_on));
   if (options_.recorder != nullptr) {
     options_.recorder->set_score({r.passed, r.total, r.seconds, result_json(r)});
     options_.recorder->close();

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/exchange.h"
+#include "cli/handle_watch.h"
 #include "cli/inputs.h"
 #include "cli/pacing.h"
 #include "cli/security.h"
@@ -31,6 +32,7 @@ struct LiveView {
   const TaskStatus& status;
   const HapticReport& hands;
   const std::vector<std::string>& device_names;
+  const std::vector<TaskWarning>& handle_warnings;  // what the handles say of their own readings
 };
 
 struct LiveOptions {
@@ -83,6 +85,8 @@ class LiveSession {
   bool at_the_end() const noexcept;
   void score(const Observation& observation);
   void store_events();
+  void store_event(const TaskEvent& event);
+  Result with_handle_events(Result result) const;
   void store_samples();
   void show(const Observation& observation);
 
@@ -102,7 +106,8 @@ class LiveSession {
   std::int64_t epoch_us_ = 0;                // [us], steady clock at the start
   std::int64_t end_us_ = 0;                  // [us], steady clock at the end
   std::uint64_t script_end_step_ = 0;        // 0: scripts still play
-  std::size_t events_stored_ = 0;
+  HandleWatch handles_;                      // of the scoring thread, until the end
+  std::size_t events_stored_ = 0, handle_events_stored_ = 0;
   std::int64_t next_show_us_ = 0;
   std::atomic<bool> stop_{false}, world_over_{false}, over_{false};
   std::atomic<std::uint64_t> end_step_{0};   // 0: not known yet

@@ -16,7 +16,7 @@ namespace {
 
 struct RunOptions {
   CommonOptions common;
-  std::string task, input = "demo", model, record, forceps;
+  std::string task, input = "demo", model, record, forceps, code;
   bool real_time = false;
   double motion_scale = 1.0;
   double stiffness = 1.0;
@@ -50,7 +50,7 @@ int run(const RunOptions& o) {
   Setup setup = load_setup(o.common.root, o.task, o.model, o.stiffness);
   InputDevices inputs = open_inputs(o.input, o.common.root, o.task, o.motion_scale, o.forceps);
   std::unique_ptr<Recorder> recorder;
-  if (!o.record.empty()) recorder = make_recorder(o.record, setup, inputs.description);
+  if (!o.record.empty()) recorder = make_recorder(o.record, setup, inputs.description, o.code, inputs.calibration);
   LiveOptions options;
   options.paced = o.real_time || !inputs.scripted;  // hands cannot be hurried
   options.longest = o.longest;
@@ -92,6 +92,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--stiffness", o->stiffness, "Of the brain, times the model's: 0.1 to 10");
   command->add_option("--forceps", o->forceps, "Calibration of the forceps on serial:PATH (from filum calibrate forceps)");
   command->add_option("--record", o->record, "Store the session in this new file");
+  command->add_option("--code", o->code, "Code of the participant for --record: letters, digits, - and _; never a name");
   command->add_option("--motion-scale", o->motion_scale, "Movement in the scene over that of the hand")->check(CLI::Range(0.001, 10.0))->capture_default_str();
   command->add_option("--igtl-out", o->stream_port, "Send the tools' poses by OpenIGTLink from this port of this machine")->check(CLI::Range(1, 65535));
   command->add_flag("--real-time", o->real_time, "Keep to the clock instead of running as fast as possible");

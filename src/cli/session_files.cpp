@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kModelOverride = "models/override.yaml";
+constexpr const char* kForceps = "models/forceps/in-use.yaml";
 constexpr const char* kDial = "models/stiffness-dial.yaml";
 
 std::string read_whole(const std::string& file) {
@@ -61,7 +62,7 @@ std::string message_of(Json result, const std::string& session) {
 }  // namespace
 
 std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& setup, const std::string& input,
-                                        const std::string& participant) {
+                                        const std::string& participant, const std::string& calibration) {
   const SceneDescription& scene = setup.model->description;
   RecorderOptions options;
   options.file = file;
@@ -73,6 +74,7 @@ std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& se
   options.meta.n_tools = scene.n_tools;
   options.sources = read_sources(setup.root);
   if (!setup.model_file.empty()) options.sources.push_back({kModelOverride, read_whole(setup.model_file)});
+  if (!calibration.empty()) options.sources.push_back({kForceps, read_whole(calibration)});
   if (setup.stiffness != 1.0) {
     char text[48];
     std::snprintf(text, sizeof text, "stiffness: %.17g\n", setup.stiffness);

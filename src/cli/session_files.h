@@ -18,7 +18,7 @@ namespace filum {
 
 /// A recorder that stores the session's meta data and all files it was made from. Throws InputError.
 std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& setup, const std::string& input,
-                                        const std::string& participant = "");
+                                        const std::string& participant = "", const std::string& calibration = "");
 
 /// The scene and the rules a recording was made with, from the files stored in it. The folder with these files lives as long
 /// as this object.

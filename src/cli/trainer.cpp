@@ -259,14 +259,14 @@ void Trainer::start_task(const StartMessage& start) {
   start_session(start, std::move(setup), std::move(inputs));
 }
 
-void Trainer::begin_recording(const StartMessage& start, const Setup& setup, const std::string& input) {
+void Trainer::begin_recording(const StartMessage& start, const Setup& setup, const InputDevices& inputs) {
   recorder_.reset();
   view_.warning = store_warning_;
   if (!store_) return;
   try {
     const std::lock_guard lock(store_mutex_);
     const StoreEntry entry = store_->begin(start.task, start.code);
-    recorder_ = make_recorder(store_->file_of(entry.id), setup, input, start.code);
+    recorder_ = make_recorder(store_->file_of(entry.id), setup, inputs.description, start.code, inputs.calibration);
     view_.session = entry.id;
     view_.recording = true;
   } catch (const std::exception& error) {
@@ -276,12 +276,13 @@ void Trainer::begin_recording(const StartMessage& start, const Setup& setup, con
 }
 
 void Trainer::start_session(const StartMessage& start, Setup setup, InputDevices inputs) {
-  begin_recording(start, setup, inputs.description);
+  begin_recording(start, setup, inputs);
   LiveOptions options;
   options.recorder = recorder_.get();
   options.show = [server = server_.get(), stream = stream_.get()](const LiveView& v) {
     if (stream) stream->send_all(v.observation);
-    const TaskView task = task_view_of(v.status);
+    TaskView task = task_view_of(v.status);
+    for (const TaskWarning& w : v.handle_warnings) task.warnings.push_back({w.level, w.text, w.code});
     server->publish_frame(frame_body(v.observation, &task, device_views_of(v.hands, v.device_names)),
                           v.observation.real_time_factor, v.observation.overruns);
   };

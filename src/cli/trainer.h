@@ -67,7 +67,7 @@ class Trainer final : public ServerHost {
   void look_after();
   void start_task(const StartMessage& start);
   void start_session(const StartMessage& start, Setup setup, InputDevices inputs);
-  void begin_recording(const StartMessage& start, const Setup& setup, const std::string& input);
+  void begin_recording(const StartMessage& start, const Setup& setup, const InputDevices& inputs);
   void end_session();
   void watch_pull();
   void finish_pull();

@@ -28,6 +28,18 @@ std::string field(const std::string& body, const char* name) {
   return json[name].get<std::string>();
 }
 
+/// Identifiers of a list in a request.
+std::vector<std::string> names(const std::string& body, const char* name) {
+  const Json json = Json::parse(body, nullptr, false);
+  if (!json.is_object() || !json.contains(name) || !json[name].is_array()) throw InputError("request", name, "nothing", "a list of sessions");
+  std::vector<std::string> list;
+  for (const Json& one : json[name]) {
+    if (!one.is_string()) throw InputError("request", name, one.dump().substr(0, 80), "identifiers of sessions");
+    list.push_back(one.get<std::string>());
+  }
+  return list;
+}
+
 std::string page_of(const std::string& file, const std::string& clamped) {
   AnalysisInput input;
   input.sessions.push_back(open_session(file));
@@ -38,7 +50,7 @@ std::string page_of(const std::string& file, const std::string& clamped) {
 }  // namespace
 
 TrainerLab::TrainerLab(LabOptions options, std::function<std::optional<std::string>(const std::string&)> recording_of)
-    : options_(std::move(options)), recording_of_(std::move(recording_of)), reconcile_(options_.datasets, options_.folder + "/reports", options_.root), chosen_(options_.calibration) {}
+    : options_(std::move(options)), recording_of_(std::move(recording_of)), reconcile_(options_.datasets, options_.folder + "/reports", options_.root), study_(open_session), chosen_(options_.calibration) {}
 
 TrainerLab::~TrainerLab() {
   if (analyst_.joinable()) analyst_.join();
@@ -62,6 +74,7 @@ Json TrainerLab::calibration_status() const {
 std::optional<std::string> TrainerLab::get(std::string_view path) {
   if (path == "/api/reconcile") return text_of(reconcile_.status());
   if (path == "/api/calibration") return text_of(calibration_status());
+  if (path == "/api/study") return text_of(study_.status());
   if (path == "/api/camera") return text_of(camera_status());
   if (!take(path, "/api/analysis/")) return std::nullopt;
   const std::size_t slash = path.find('/');
@@ -109,8 +122,25 @@ Json TrainerLab::change_camera(std::string_view what, const std::string& body) {
   return camera_status();
 }
 
+Json TrainerLab::change_study(std::string_view what, const std::string& body) {
+  const auto choices = [&](const char* name) {
+    std::vector<StudyJob::Choice> list;
+    for (const std::string& id : names(body, name)) {
+      const auto file = recording_of_(id);
+      if (!file) throw InputError("study", name, id, "the identifier of a stored session");
+      list.push_back({id, *file});
+    }
+    return list;
+  };
+  if (what == "start") study_.start(choices("sessions"), choices("clamped"));
+  else if (what == "cancel") study_.cancel();
+  else return nullptr;
+  return study_.status();
+}
+
 Json TrainerLab::change(std::string_view path, const std::string& body) {
   if (take(path, "/api/camera/")) return change_camera(path, body);
+  if (take(path, "/api/study/")) return change_study(path, body);
   if (path == "/api/reconcile/start") reconcile_.start(field(body, "dataset"));
   else if (path == "/api/reconcile/cancel") reconcile_.cancel();
   else if (!path.starts_with("/api/calibration/")) return nullptr;
@@ -145,6 +175,7 @@ std::optional<Document> TrainerLab::document(std::string_view path) {
     if (at == analyses_.end() || at->second.state != "ready") return std::nullopt;
     return Document{"text/html; charset=utf-8", at->second.text};
   }
+  if (take(path, "/documents/study/")) return study_.file(std::string(path));
   if (path == "/documents/camera/preview.jpg") {
     const std::lock_guard lock(guard_);
     auto picture = camera_ ? camera_->preview() : std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
-// The laboratory behind the trainer's page: reconcile, guided calibration of the forceps and of a camera, analysis of recordings. Called by the server's
+// The laboratory behind the trainer's page: reconcile, guided calibration of the forceps and of a camera, analysis of
+// recordings one by one and of many together. Called by the server's
 // thread; whatever takes longer than a blink runs in a thread of its own and is asked for again. Test: tests/cli/trainer_lab_test.cpp.
 
 #include <atomic>
@@ -16,6 +17,7 @@
 #include "cli/calibration_session.h"
 #include "cli/camera_session.h"
 #include "cli/reconcile_job.h"
+#include "cli/study_job.h"
 #include "server/server.h"
 
 namespace filum {
@@ -53,6 +55,7 @@ class TrainerLab {
   nlohmann::ordered_json calibration_status() const;
   nlohmann::ordered_json camera_status() const;
   nlohmann::ordered_json change_camera(std::string_view what, const std::string& body);
+  nlohmann::ordered_json change_study(std::string_view what, const std::string& body);
   nlohmann::ordered_json change(std::string_view path, const std::string& body);
   std::optional<std::string> analysis(const std::string& session, const std::string& clamped);
   void analyse_in_background(const std::string& key, const std::string& file, const std::string& clamped);
@@ -60,6 +63,7 @@ class TrainerLab {
   const LabOptions options_;
   const std::function<std::optional<std::string>(const std::string&)> recording_of_;
   ReconcileJob reconcile_;
+  StudyJob study_;
   mutable std::mutex guard_;
   std::unique_ptr<CalibrationSession> calibration_;  // guarded
   std::string chosen_;                               // guarded

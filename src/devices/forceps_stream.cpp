@@ -159,7 +159,7 @@ void ForcepsStream::on_grip(const Source& from, const filum_grip& grip, std::int
   if (sample.has_grip_angle) sample.grip_angle = calibration_.angle(grip.angle);
   if (sample.has_grip_force) sample.grip_force = calibration_.force(grip.force);
   sample.buttons = buttons_[grip.tool] = buttons_of(grip.flags);
-  sample.buttons |= faults_of(grip.flags);
+  sample.buttons |= faults_of(grip.flags) | (calibration_differs() ? kForeignCalibration : 0u);
   out.push_back(sample);
   ++received_;
 }

@@ -27,7 +27,7 @@ using Text = std::shared_ptr<const std::string>;
 constexpr std::size_t kMaxBrowsers = 16;
 constexpr std::size_t kMaxConnections = 128;
 constexpr std::size_t kMaxHeader = 16 * 1024;       // [byte]
-constexpr std::size_t kMaxBody = 16 * 1024;         // [byte]
+constexpr std::size_t kMaxBody = 64 * 1024;         // [byte]
 constexpr std::size_t kMaxWaiting = 8 * 1024 * 1024;  // [byte] a browser may be behind before it is let go
 constexpr int kMaxBadMessages = 100;                // in a row
 constexpr std::chrono::seconds kHttpTimeout{30};

@@ -65,7 +65,7 @@ Table samples_table(const RecordingReader& recording) {
               record.has_grip_force ? record.grip_force : kAbsent);
     table.add_integer("raw_angle", "count", "converter's reading of the grip angle", record.raw_angle);
     table.add_integer("raw_force", "count", "converter's reading of the grip force", record.raw_force);
-    table.add_integer("buttons", "-", "bit set: 1 clutch, 2 cut, 4 next; 256 angle saturated, 512 force saturated, 1024 angle wire broken, 2048 force wire broken", record.buttons);
+    table.add_integer("buttons", "-", "bit set: 1 clutch, 2 cut, 4 next; 256 angle saturated, 512 force saturated, 1024 angle wire broken, 2048 force wire broken, 4096 calibration of another handle", record.buttons);
   }
   return table.take();
 }

@@ -153,6 +153,12 @@ TEST(Report, LossesAreGapsAndSessionsAreCorrelated) {
     record(file, s);
     input.sessions.push_back(read(file));
   }
+  EXPECT_EQ(analyse(input, "filum").json["correlation"]["force_tremor"]["across"]["n"], 0) << "tremor that is not resolved";
+  Session still;
+  still.amplitude = 0.0;
+  still.seed = 9;
+  record(folder.file("clamped.rec"), still);
+  input.clamped = read(folder.file("clamped.rec"));
   const AnalysisReport report = analyse(input, "filum");
   EXPECT_EQ(report.json["sessions"].size(), 4u);
   EXPECT_EQ(report.json["sessions"][0]["tremor"][0]["gaps"], 8);

@@ -62,7 +62,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
     expect(opened.trouble).toEqual([]);
   });
 
-  it("analyses a recorded session on its result page", { timeout: 600_000 }, async () => {
+  it("analyses a recorded session on its result page, and studies all on a page of their own", { timeout: 600_000 }, async () => {
     trainer = await startTrainer("--datasets", data);
     opened = await openPage(trainer.address);
     const { page } = opened;
@@ -78,6 +78,24 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
     const text = (await body.textContent()) ?? "";
     for (const word of ["Tremor", "Smoothness", "6-12"]) expect(text.toLowerCase(), text.slice(0, 400)).toContain(word.toLowerCase());
     expect(await page.frameLocator("iframe.document").locator("svg").count()).toBeGreaterThan(0);
+    // The study, by keyboard alone: a demonstration is left out unless it is asked for.
+    await page.focus("nav a[href='#/study']");
+    await page.keyboard.press("Enter");
+    const role = page.locator(".study tbody select");
+    await role.waitFor();
+    expect(await role.inputValue()).toBe("out");
+    await page.focus(".study .primary");
+    await page.keyboard.press("Enter");
+    await until(() => page.textContent(".study [role=status] >> nth=-1"), (said) => (said ?? "").includes("at least one"), "nothing to study is said");
+    await role.focus();
+    await page.keyboard.press("Home"); // the first: it counts
+    await page.focus(".study .primary");
+    await page.keyboard.press("Enter");
+    const study = (await page.frameLocator(".study iframe").locator("body").textContent()) ?? "";
+    for (const word of ["tip-hold", "across people", "fewer than 4 people", "zero: a script has no sensor"]) expect(study).toContain(word);
+    const csv = await page.evaluate(async () => (await fetch("/documents/study/sessions.csv")).text());
+    expect(csv.split("\n").length).toBe(3);
+    expect((await page.evaluate(async () => (await fetch("/documents/study/plot-tip-hold.svg")).status))).toBe(200);
     expect(opened.trouble).toEqual([]);
   });
 
@@ -90,7 +108,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
 
   it.skipIf(!existsSync(feederProgram))("leads through the whole calibration of a handle and puts it to use", { timeout: 300_000 }, async () => {
     const link = join(data, "handle"), counts = join(data, "counts.yaml"); // whose pad rests within the amplifier's range
-    writeFileSync(counts, readFileSync(join(__dirname, "../../models/forceps/default.yaml"), "utf8").replace("zero: 100 count", "zero: 500 count"));
+    writeFileSync(counts, readFileSync(join(__dirname, "../../models/forceps/default.yaml"), "utf8").replace("zero: 409 count", "zero: 500 count"));
     const feeder: ChildProcess = spawn(feederProgram, ["curricula/research/tip-hold/demonstration.yaml", "--calibration", counts, "--link", link, "--by-hand", "--rate", "5000", "--hold", "600"], { cwd: join(__dirname, "../.."), stdio: ["pipe", "ignore", "ignore"] });
     try {
       await until(() => existsSync(link), (there) => there, "the handle is there");

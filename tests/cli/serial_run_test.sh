@@ -35,7 +35,9 @@ longest=3
 # field FILE NAME: a value of the JSON document.
 field() { node -e 'const d = JSON.parse(require("fs").readFileSync(process.argv[1])); console.log(process.argv[2].split(".").reduce((x, k) => x?.[k], d));' "$1" "$2"; }
 
-(cd "$root" && exec "$feeder" "$script" --link "$work/port" --drop 0.01 --flip 0.0002 --hold 1) >"$work/feeder.out" 2>"$work/feeder.err" &
+# The handle says it was calibrated by file 42; the trainer is not given that file.
+sed "s/identity: 0/identity: 42/" "$root/models/forceps/default.yaml" >"$work/handle.yaml"
+(cd "$root" && exec "$feeder" "$script" --calibration "$work/handle.yaml" --link "$work/port" --drop 0.01 --flip 0.0002 --hold 1) >"$work/feeder.out" 2>"$work/feeder.err" &
 feeding=$!
 for _ in $(seq 100); do [ -e "$work/port" ] && break; sleep 0.1; done
 [ -e "$work/port" ] || fail "the feeder opened no port"
@@ -45,6 +47,8 @@ for _ in $(seq 100); do [ -e "$work/port" ] && break; sleep 0.1; done
 "$filum" export "$work/session" --format csv --out "$work/csv" >/dev/null 2>"$work/export.err" || fail "export"
 samples=$(find "$work/csv" -name 'samples*.csv' -exec cat {} + | wc -l)
 [ "$samples" -gt 500 ] || fail "only $samples device samples were stored"
+grep -q '"foreign-calibration"' "$work/live.json" || fail "the calibration of another handle is not said"
+grep -rq foreign-calibration "$work/csv" || fail "nor recorded"
 "$filum" replay "$work/session" --json >"$work/replay.json" 2>"$work/replay.err" || fail "replay exited with $?"
 [ "$(field "$work/replay.json" identical)" = true ] || fail "the replay differs: $(cat "$work/replay.json")"
 "$filum" run knot-square --input "$work/session" --longest $longest --json >"$work/device.json" 2>"$work/device.err" || fail "run of the replay device exited with $?"

@@ -25,8 +25,8 @@
 /* The amplifiers are laid out for 5 to 95 % of the range; resistors draw an input whose wire is broken to a rail. */
 #define SATURATED_LOW 205u
 #define SATURATED_HIGH 3887u
-#define BROKEN_LOW 41u
-#define BROKEN_HIGH 4051u
+#define BROKEN_LOW 82u   /* 0.1 V: the amplifiers reach to 0.05 V of either rail */
+#define BROKEN_HIGH 4010u
 #define BROKEN_AFTER 20        /* samples in a row at the rail */
 
 #define DEBOUNCE 5             /* samples a switch must agree */

@@ -48,7 +48,7 @@ export class App {
       h("a", { class: "skip", href: "#main", onclick: (event: Event) => { event.preventDefault(); this.main.focus(); } }, "To the content"),
       h("header", { class: "top" },
         h("a", { class: "brand", href: "#/" }, "Filum"),
-        h("nav", { "aria-label": "Pages" }, h("a", { href: "#/" }, "Tasks"), h("a", { href: "#/sessions" }, "Sessions"), h("a", { href: "#/laboratory" }, "Laboratory")),
+        h("nav", { "aria-label": "Pages" }, h("a", { href: "#/" }, "Tasks"), h("a", { href: "#/sessions" }, "Sessions"), h("a", { href: "#/laboratory" }, "Laboratory"), h("a", { href: "#/study" }, "Study")),
         h("span", { class: "spacer" }), this.recording, this.line,
         this.soundButton, h("button", { class: "quietbutton", title: "Keys (?)", onclick: () => this.help.toggle() }, "Keys (?)")),
       this.notice, this.main, this.help.element);

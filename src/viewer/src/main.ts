@@ -4,6 +4,7 @@ import { LivePage } from "./ui/live_page";
 import { ReplayPage } from "./ui/replay_page";
 import { ResultPage } from "./ui/result_page";
 import { SessionsPage } from "./ui/sessions_page";
+import { StudyPage } from "./ui/study_page";
 import { TasksPage } from "./ui/tasks_page";
 import "./style.css";
 
@@ -14,6 +15,7 @@ const pages: Record<string, PageMaker> = {
   result: (app, id) => new ResultPage(app, id),
   replay: (app, id) => new ReplayPage(app, id),
   sessions: (app) => new SessionsPage(app),
+  study: (app) => new StudyPage(app),
 };
 
 new App(document.getElementById("app")!, pages).start();

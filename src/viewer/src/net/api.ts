@@ -55,5 +55,12 @@ export interface AnalysisStatus { state: "working" | "ready" | "failed"; documen
 export const analysis = (id: string, clamped: string): Promise<AnalysisStatus> =>
   get(`/api/analysis/${encodeURIComponent(id)}${clamped ? `/${encodeURIComponent(clamped)}` : ""}`);
 
+export interface StudyStatus { state: "idle" | "running" | "done" | "cancelled" | "failed"; message: string; at: number; of: number; left_out: { id: string; why: string }[]; tasks: string[] }
+export const study = {
+  status: (): Promise<StudyStatus> => get("/api/study"),
+  start: (chosen: string[], clamped: string[]): Promise<StudyStatus> => post("/api/study/start", { sessions: chosen, clamped }),
+  cancel: (): Promise<StudyStatus> => post("/api/study/cancel", {}),
+};
+
 export const sessions = (): Promise<SessionList> => get("/api/sessions");
 export const session = (id: string): Promise<SessionDetail> => get(`/api/sessions/${encodeURIComponent(id)}`);

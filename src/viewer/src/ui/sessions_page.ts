@@ -5,7 +5,7 @@ import { sessions } from "../net/api";
 import { h } from "./dom";
 import { clock, day } from "./format";
 
-const kInputNames: Record<string, string> = { pointer: "pointer", demo: "demonstration", device: "attached instruments" };
+export const kInputNames: Record<string, string> = { pointer: "pointer", demo: "demonstration", device: "attached instruments" };
 
 export class SessionsPage implements Page {
   readonly title = "Sessions";
