@@ -12,7 +12,8 @@ using Json = nlohmann::ordered_json;
 std::string number(const Json& value, double scale = 1.0) {
   if (!value.is_number()) return "-";
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", scale * value.get<double>());
+  const double v = scale * value.get<double>();
+  std::snprintf(text, sizeof text, std::abs(v) >= 999.5 ? "%.0f" : "%.3g", std::abs(v) < 1e-9 ? 0.0 : v);  // rounding errors are no measurement
   return text;
 }
 
@@ -21,28 +22,44 @@ std::string heading(const Json& t) {
   return "tool " + std::to_string(t["tool"].get<int>()) + ", " + t["space"].get<std::string>() + " space";
 }
 
-/// Density over frequency, 0-25 Hz, logarithmic over six decades below its highest value.
-std::string spectrum_svg(const Json& spectrum) {
-  constexpr double kWidth = 520.0, kHeight = 200.0, kDecades = 6.0, kTo = 25.0;
+/// Density over frequency, 0-25 Hz, logarithmic over six decades below its highest value; dashed, the device's noise floor as a mean over
+/// each band.
+std::string spectrum_svg(const Json& t) {
+  constexpr double kWidth = 520.0, kHeight = 200.0, kTo = 25.0;
+  constexpr int kDecades = 6;
+  const Json& spectrum = t["spectrum"];
   double highest = 0.0;
   for (const Json& d : spectrum["density_m2_per_hz"]) highest = std::max(highest, d.get<double>());
   if (!(highest > 0.0)) return "<p>no power at all</p>";
-  std::string points;
-  char text[64];
+  const int top = static_cast<int>(std::ceil(std::log10(1e12 * highest)));  // of um^2/Hz
+  const auto x = [&](double f) { return kWidth * f / kTo; };
+  const auto y = [&](double density) { return std::clamp((top - std::log10(std::max(1e12 * density, 1e-30))) / kDecades, 0.0, 1.0) * kHeight; };
+  std::string points, floor, axes;
+  char text[200];
   for (std::size_t k = 0; k < spectrum["frequency_hz"].size(); ++k) {
-    const double level = std::log10(std::max(spectrum["density_m2_per_hz"][k].get<double>(), 1e-30) / highest);
-    std::snprintf(text, sizeof text, "%.1f,%.1f ", kWidth * spectrum["frequency_hz"][k].get<double>() / kTo,
-                  std::min(1.0, -level / kDecades) * kHeight);
+    std::snprintf(text, sizeof text, "%.1f,%.1f ", x(spectrum["frequency_hz"][k].get<double>()), y(spectrum["density_m2_per_hz"][k].get<double>()));
     points += text;
   }
-  std::string svg = "<svg viewBox=\"-4 -4 528 226\" width=\"528\" font-size=\"11\" font-family=\"sans-serif\">";
-  std::snprintf(text, sizeof text, "<rect x=\"%.1f\" y=\"0\" width=\"%.1f\" ", kWidth * 8.0 / kTo, kWidth * 4.0 / kTo);
-  svg += text + std::string("height=\"200\" fill=\"#0072B2\" opacity=\"0.12\"/><rect width=\"520\" height=\"200\" fill=\"none\" stroke=\"#888\"/>");
-  for (int f = 0; f <= 25; f += 5) {
-    std::snprintf(text, sizeof text, "<text x=\"%.0f\" y=\"214\" text-anchor=\"middle\">%d Hz</text>", kWidth * f / kTo, f);
-    svg += text;
+  for (const Json& b : t["bands"]) {
+    if (!b["noise_floor_rms_m"].is_number() || b["from_hz"] == 8.0) continue;  // 8-12 Hz lies within 6-12 Hz
+    const double from = b["from_hz"], to = b["to_hz"], rms = b["noise_floor_rms_m"];
+    if (!(rms > 0.0)) continue;
+    std::snprintf(text, sizeof text, "<path d=\"M%.1f %.1fH%.1f\" stroke=\"#009E73\" stroke-width=\"2\" stroke-dasharray=\"5 3\"/>", x(from), y(rms * rms / (to - from)), x(to));
+    floor += text;
   }
-  return svg + "<polyline fill=\"none\" stroke=\"#D55E00\" stroke-width=\"1.5\" points=\"" + points + "\"/></svg>";
+  for (int f = 0; f <= 25; f += 5) {
+    std::snprintf(text, sizeof text, "<text x=\"%.0f\" y=\"214\" text-anchor=\"middle\">%d Hz</text>", x(f), f);
+    axes += text;
+  }
+  for (int d = 0; d <= kDecades; d += 2) {
+    const double at = kHeight * d / kDecades;
+    std::snprintf(text, sizeof text, "<path d=\"M-4 %.1fH0\" stroke=\"#888\"/><text x=\"-7\" y=\"%.1f\" text-anchor=\"end\">1e%d</text>", at, at + 4.0, top - d);
+    axes += text;
+  }
+  std::snprintf(text, sizeof text, "<rect x=\"%.1f\" y=\"0\" width=\"%.1f\" height=\"200\" fill=\"#0072B2\" opacity=\"0.12\"/>", x(8.0), x(4.0));
+  return "<svg viewBox=\"-64 -8 610 232\" width=\"610\" font-size=\"11\" font-family=\"sans-serif\" role=\"img\" aria-label=\"Power spectral density\">" + std::string(text) +
+         "<rect width=\"520\" height=\"200\" fill=\"none\" stroke=\"#888\"/><text transform=\"rotate(-90)\" x=\"-100\" y=\"-46\" text-anchor=\"middle\">density [um&sup2;/Hz]</text>" + axes +
+         floor + "<polyline fill=\"none\" stroke=\"#D55E00\" stroke-width=\"1.5\" points=\"" + points + "\"/></svg><p>Shaded: 8-12 Hz" + (floor.empty() ? "" : "; dashed: the device's noise floor") + ".</p>";
 }
 
 std::string tremor_html(const Json& t) {
@@ -64,7 +81,7 @@ std::string tremor_html(const Json& t) {
   if (t.contains("peak_hz"))
     html += "<p>Peak " + number(t["peak_hz"]) + " Hz, half-power width " + number(t["half_power_width_hz"]) + " Hz (resolution " +
             number(t["resolution_hz"]) + " Hz)</p>";
-  return html + spectrum_svg(t["spectrum"]);
+  return html + spectrum_svg(t);
 }
 
 std::string spread_text(const Json& s, double scale = 1.0) {

@@ -28,6 +28,7 @@ Json score_json(const Result& r) {
     if (item.number) value = finite(*item.number);
     if (!item.text.empty()) value = item.text;
     items.push_back({{"name", item.name},
+                     {"title", item.title},
                      {"value", value},
                      {"unit", item.unit},
                      {"points", finite(item.points)},

@@ -1,5 +1,10 @@
 // Numbers for people: always with a unit, never with false precision.
 
+/// Tasks of the laboratory: no thread takes part in them.
+export const kLaboratory = ["tip-hold", "trace", "grasp-transfer"];
+/// Events that come so often that they hide the others; the recording and the analysis have them.
+export const kFrequent = ["overrun", "target-error"];
+
 export function clock(seconds: number): string {
   const whole = Math.max(0, Math.floor(seconds));
   const tenths = Math.floor((Math.max(0, seconds) - whole) * 10);

@@ -9,7 +9,7 @@ import { clear, h, setAttribute, setText } from "./dom";
 import { opticsBar } from "./field_view";
 import { microscopeKey, microscopeMouse } from "./microscope_keys";
 import { ForcePanel, HealthPanel, StepPanel, toolTitle, WarningList } from "./panels";
-import { quantity, words } from "./format";
+import { quantity, words, kFrequent } from "./format";
 
 const kPanelsEvery = 60; // [ms]
 const kEventsShown = 5;
@@ -171,7 +171,7 @@ export class LivePage implements Page {
   }
 
   private addEvent(event: TimedEvent): void {
-    if (event.name === "overrun") return; // counted in the health panel
+    if (kFrequent.includes(event.name)) return;
     const value = event.unit !== "-" && event.value !== 0 ? ` ${quantity(event.value, event.unit)}` : "";
     this.events.prepend(h("li", {}, h("span", { class: "when" }, `${event.time.toFixed(1)} s`), event.text || words(event.name) + value));
     while (this.events.children.length > kEventsShown) this.events.lastElementChild!.remove();

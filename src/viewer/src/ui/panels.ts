@@ -1,7 +1,7 @@
 // The panels beside the field: steps and hint, timers, force bars, warnings, health. They show what a frame says.
 import type { DeviceStatus, Frame, Scene, TaskState, Warning } from "../messages";
 import { clear, h, setAttribute, setText } from "./dom";
-import { clock, milliNewton, words } from "./format";
+import { clock, kLaboratory, milliNewton, words } from "./format";
 import { icon } from "./pictures";
 
 /// Where the pull on the thread stands against its strength. The words come with the colour, and the pattern with both.
@@ -65,11 +65,12 @@ export class ForcePanel {
     this.strength = scene.thread_strength;
     this.thread = new Meter("Tension", scene.thread_strength > 0 ? 1.1 * scene.thread_strength : null,
       `breaks at ${milliNewton(scene.thread_strength)}`);
-    this.element.append(h("h2", {}, "Thread"), h("p", { class: "quiet" }, `${scene.suture} · ${(2e6 * scene.thread_radius).toFixed(0)} µm · breaks at ${milliNewton(scene.thread_strength)}`), this.thread.element);
+    const thread = !kLaboratory.includes(scene.task);
+    if (thread) this.element.append(h("h2", {}, "Thread"), h("p", { class: "quiet" }, `${scene.suture} · ${(2e6 * scene.thread_radius).toFixed(0)} µm · breaks at ${milliNewton(scene.thread_strength)}`), this.thread.element);
     this.tools = scene.tools.map((tool, index) => {
       const grip = new Meter("Grip", null, null), pull = new Meter("Pull of the thread", null, null);
       const state = h("span", { class: "tag" }, "");
-      const box = h("div", { class: "tool" }, h("h2", {}, h("span", { class: `bands b${index}`, "aria-hidden": "true" }), toolTitle(tool.name), state), ...(tool.kind === "scissors" ? [] : [grip.element, pull.element]));
+      const box = h("div", { class: "tool" }, h("h2", {}, h("span", { class: `bands b${index}`, "aria-hidden": "true" }), toolTitle(tool.name), state), ...(tool.kind === "scissors" ? [] : thread ? [grip.element, pull.element] : [grip.element]));
       this.element.append(box);
       return { grip, pull, state, box };
     });

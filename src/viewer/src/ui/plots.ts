@@ -2,10 +2,12 @@
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Series, TimedEvent } from "../messages";
-import { shownUnit, words } from "./format";
+import { kFrequent, shownUnit, words } from "./format";
 
 const kColours = ["#6fd3c0", "#f2b04e", "#b79cf0", "#f08a8a", "#9ac8f0", "#d7e07a"];
 const kDashes = [[], [8, 4], [2, 3], [12, 3, 2, 3], [5, 5], [1, 4]]; // curves differ without colour
+
+const kSmallest = 0.01; // in the unit shown; below it a curve is a line at rest, not a landscape of rounding errors
 
 export interface ChartData { unit: string; titles: string[]; names: string[]; columns: (number | null)[][] }
 
@@ -32,7 +34,7 @@ export function drawChart(holder: HTMLElement, data: ChartData, events: readonly
   const axis = { stroke: "#b9cccb", grid: { stroke: "#ffffff14", width: 1 }, ticks: { stroke: "#ffffff30", width: 1 }, font: "12px system-ui, sans-serif" };
   const plot = new uPlot({
     width: Math.max(280, holder.clientWidth), height: 230,
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, y: { range: (_, low, high) => (high - low < kSmallest ? [Math.min(0, low), Math.max(1, high)] : uPlot.rangeNum(low, high, 0.1, true)) } },
     cursor: { y: false },
     legend: { live: true, markers: { width: 2, dash: (_, i) => (i < 2 ? "solid" : i % 2 === 0 ? "dashed" : "dotted") } },
     axes: [{ ...axis, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(2)} s`) },
@@ -60,7 +62,7 @@ function markEvents(u: uPlot, events: readonly TimedEvent[]): void {
   ctx.font = `${Math.round(10 * devicePixelRatio)}px system-ui, sans-serif`;
   let labelled = -Infinity;
   for (const event of events) {
-    if (event.name === "overrun") continue;
+    if (kFrequent.includes(event.name)) continue;
     const x = u.valToPos(event.time, "x", true);
     if (x < bbox.left || x > bbox.left + bbox.width) continue;
     ctx.beginPath();

@@ -4,7 +4,7 @@ import type { Result, ServerMessage } from "../messages";
 import { session as fetchSession } from "../net/api";
 import { analysisPanel } from "./analysis_panel";
 import { h } from "./dom";
-import { clock, kKnotTitles, milliNewton, quantity, words } from "./format";
+import { clock, kFrequent, kKnotTitles, kLaboratory, milliNewton, quantity, words } from "./format";
 import { PathPlot } from "./path_plot";
 import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
@@ -68,7 +68,7 @@ export class ResultPage implements Page {
   private scoreTable(result: Result): HTMLElement {
     const rows = result.score.items.map((item) => {
       const share = item.max_points > 0 ? Math.max(0, Math.min(1, item.points / item.max_points)) : 0;
-      return h("tr", {}, h("th", { scope: "row" }, words(item.name)), h("td", { class: "number" }, quantity(item.value, item.unit)),
+      return h("tr", {}, h("th", { scope: "row" }, item.title ?? words(item.name)), h("td", { class: "number" }, quantity(item.value, item.unit)),
         h("td", { class: "number" }, h("strong", {}, `${+item.points.toFixed(1)}`), ` / ${+item.max_points.toFixed(1)}`,
           h("div", { class: "track", "aria-hidden": "true" }, h("div", { class: "fill", style: `transform:scaleX(${share.toFixed(3)})` }))),
         h("td", {}, item.why));
@@ -87,7 +87,7 @@ export class ResultPage implements Page {
   }
 
   private eventCard(result: Result, id: string | null): HTMLElement {
-    const rows = result.events.map((event) => h("li", {},
+    const rows = result.events.filter((event) => !kFrequent.includes(event.name)).map((event) => h("li", {},
       id ? h("a", { href: `#/replay/${encodeURIComponent(id)}/${event.time.toFixed(2)}`, title: "Show in the replay" }, `${event.time.toFixed(1)} s`) : h("span", { class: "when" }, `${event.time.toFixed(1)} s`),
       h("span", {}, event.text || words(event.name)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit))));
     return h("section", { class: "panel eventlist" }, h("h2", {}, "What happened"), rows.length > 0 ? h("ul", { class: "events" }, ...rows) : h("p", { class: "quiet" }, "Nothing was noted."));
@@ -95,7 +95,7 @@ export class ResultPage implements Page {
 
   private curves(result: Result): HTMLElement {
     const section = h("div", { class: "curves" });
-    const charts = chartsOf(result.series.filter((one) => one.time.length > 1));
+    const charts = chartsOf(result.series.filter((one) => one.time.length > 1 && !(kLaboratory.includes(result.task) && /tension|thread/.test(one.name))));
     for (const data of charts) {
       const holder = h("div", { class: "chart" });
       section.append(h("section", { class: "panel" }, h("h2", {}, this.chartTitle(data.titles, data.unit)), holder));

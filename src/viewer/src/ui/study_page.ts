@@ -4,11 +4,10 @@ import type { App, Page } from "../app";
 import type { SessionInfo } from "../messages";
 import { sessions, study, type StudyStatus } from "../net/api";
 import { h, setText } from "./dom";
-import { clock, day } from "./format";
+import { clock, day, kLaboratory } from "./format";
 import { kInputNames } from "./sessions_page";
 
 const kEvery = 300; // [ms]
-const kTasks = ["tip-hold", "trace", "grasp-transfer"];
 type Role = "counts" | "clamped" | "out";
 const kRoles: Record<Role, string> = { counts: "counts", clamped: "tool clamped: noise floor", out: "left out" };
 
@@ -46,7 +45,7 @@ export class StudyPage implements Page {
 
   private async load(): Promise<void> {
     try {
-      const all = (await sessions()).sessions.filter((one) => kTasks.includes(one.task) && one.finished);
+      const all = (await sessions()).sessions.filter((one) => kLaboratory.includes(one.task) && one.finished);
       this.start.disabled = all.length === 0;
       this.list.replaceChildren(...(all.length > 0 ? [this.buttons(all), this.table(all)] : [h("p", {}, "No task of the laboratory has been recorded yet: ", h("a", { href: "#/" }, "choose one"), ".")]));
     } catch (error) { this.list.replaceChildren(h("p", { role: "alert" }, `The recordings cannot be listed: ${(error as Error).message}.`)); }
