@@ -38,6 +38,11 @@ expect "truncated recording" 2 "$work/cut" replay "$work/cut" --json
 expect "recording that exists already" 2 "$work/good" run knot-square --input "$work/short.yaml" --record "$work/good"
 expect "and is as it was" 0 '"identical":true' replay "$work/good" --json
 expect "no such serial port" 2 "$work/none" run knot-square --input "serial:$work/none" --longest 1
+sed 's/gain: 0.01 deg/gain: .nan deg/' "$root/models/forceps/default.yaml" >"$work/forceps.yaml"
+expect "NaN in a calibration" 2 "forceps.yaml" run trace --input "serial:$work/none" --forceps "$work/forceps.yaml" --longest 1
+head -n 12 "$root/models/forceps/default.yaml" >"$work/half.yaml"
+expect "half a calibration" 2 "half.yaml" run trace --input "serial:$work/none" --forceps "$work/half.yaml" --longest 1
+expect "calibration without a handle" 2 "--forceps" run trace --input demo --forceps "$work/half.yaml"
 sed 's/"12 deg"/"12 furlong"/' "$work/short.yaml" >"$work/unit.yaml"
 expect "unknown unit" 2 "furlong" run knot-square --input "$work/unit.yaml"
 sed 's/"-12 mm"/".nan mm"/' "$work/short.yaml" >"$work/nan.yaml"

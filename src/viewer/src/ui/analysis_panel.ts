@@ -1,6 +1,7 @@
 // Tremor, smoothness and grasp force of a recorded session, as the trainer's analysis gives them: one page with plots, in a frame.
 import { analysis, sessions } from "../net/api";
 import { h, setText } from "./dom";
+import { day, kLaboratory } from "./format";
 
 const kEvery = 500; // [ms]
 
@@ -22,10 +23,12 @@ export function analysisPanel(id: string): { element: HTMLElement; dispose(): vo
     } catch (error) { setText(said, `The session cannot be analysed: ${(error as Error).message}.`); }
   };
   const button = h("button", { class: "analyse", onclick: () => void ask() }, "Analyse tremor, smoothness and grasp force");
+  const across = h("a", { class: "button", href: "#/study" }, "Study across sessions");
   const element = h("section", { class: "panel analysis" }, h("h2", {}, "Laboratory analysis"),
-    h("p", {}, h("label", {}, "Noise floor of the device, from a recording with the tool clamped: ", clamped)), button, said, holder);
+    h("p", {}, h("label", {}, "Noise floor of the device, from a recording with the tool clamped: ", clamped)), h("div", { class: "buttons" }, button, across), said, holder);
   void sessions().then(({ sessions: list }) => {
-    for (const one of list) if (one.id !== id) clamped.append(h("option", { value: one.id }, `${one.title || one.task}, ${one.started}`));
+    const still = list.filter((one) => one.id !== id && one.finished && kLaboratory.includes(one.task)).sort((a, b) => Number(/^clamped/i.test(b.code)) - Number(/^clamped/i.test(a.code)));
+    for (const one of still) clamped.append(h("option", { value: one.id }, `${one.code ? `${one.code}: ` : ""}${one.title || one.task}, ${day(one.started)}`));
   }, () => undefined);
   return { element, dispose: () => { gone = true; window.clearTimeout(timer); } };
 }
