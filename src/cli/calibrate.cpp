@@ -1,6 +1,7 @@
 // filum calibrate forceps: leads through the calibration of a pair of forceps in the terminal, fits it and writes its file.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -38,8 +39,10 @@ bool read_value(SerialForceps& forceps, CalibrationGuide& guide) {
   using Clock = std::chrono::steady_clock;
   std::vector<DeviceSample> samples;
   samples.reserve(kMaxSamplesPerPoll);
-  forceps.poll(steady_now_us(), samples);  // what waited in the line is from before
-  samples.clear();
+  for (bool waiting = true; waiting; samples.clear()) {  // what waited in the line, up to seconds of it, is from before the value was set
+    forceps.poll(steady_now_us(), samples);
+    waiting = !samples.empty();
+  }
   guide.begin();
   const auto end = Clock::now() + std::chrono::seconds(5);
   while (guide.reading() && Clock::now() < end) {
@@ -60,6 +63,10 @@ std::vector<CalibrationPoint> guide_through(SerialForceps& forceps, CalibrationG
     if (!std::getline(std::cin, line)) throw InputError("calibrate", "standard input", "ended", "Enter for each value");
     if (!read_value(forceps, guide)) {
       std::fprintf(stderr, "  no reading within 5 s: is the handle plugged in, is a wire broken? Again.\n");
+      continue;
+    }
+    if (guide.unsteady() > 0.0) {
+      std::fprintf(stderr, "  not steady (%.1f counts): hold it still. Again.\n", guide.unsteady());
       continue;
     }
     std::fprintf(stderr, "  %.1f counts, noise %.1f\n", guide.points().back().count, guide.points().back().noise);
@@ -99,6 +106,8 @@ void print_fit(const char* name, const CalibrationFit& f, double scale, const ch
 
 int run(const CalibrateOptions& o) {
   if (o.port.empty() == o.points.empty()) throw InputError("calibrate", "--port", o.port, "either --port or --points");
+  if (o.points.empty() && std::min(o.angles.size(), o.forces.size()) < 5)
+    throw InputError("calibrate", "--angles, --forces", std::to_string(std::min(o.angles.size(), o.forces.size())) + " values", "at least 5");
   if (std::filesystem::exists(o.out)) throw InputError("calibrate", "--out", o.out, "a file that does not exist yet");
   const CalibrationReadings readings = o.points.empty() ? readings_from_port(o) : load_readings(o.points);
   const CalibrationFit angle = fit_line(readings.angle, {}, "deg", kDegree);
@@ -135,7 +144,7 @@ void add_calibrate(CLI::App& app, Action& action) {
   forceps->add_option("--identity", o->identity, "Identity of this calibration, as it is stored in the handle");
   forceps->add_option("--angles", o->angles, "Openings to set [deg], growing")->delimiter(',');
   forceps->add_option("--forces", o->forces, "Loads to put on the pad [N], growing")->delimiter(',');
-  forceps->add_option("--repeats", o->repeats, "Times each value is approached from below and from above")->check(CLI::Range(1, 20));
+  forceps->add_option("--repeats", o->repeats, "Times each value is approached from below and from above")->check(CLI::Range(2, 20));
   add_common(*forceps, o->common);
   forceps->callback([o, &action] { action.run = [o] { return run(*o); }; });
 }

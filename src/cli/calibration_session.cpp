@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -70,8 +71,8 @@ CalibrationPlan calibration_plan(const std::string& text, std::string port, std:
   plan.angles = growing(wish, "angles", plan.angles, 60.0);
   plan.forces = growing(wish, "forces", plan.forces, 20.0);
   if (wish.contains("repeats")) {
-    if (!wish["repeats"].is_number_integer() || wish["repeats"] < 1 || wish["repeats"] > 20)
-      throw InputError("calibration", "repeats", wish["repeats"].dump().substr(0, 80), "a whole number from 1 to 20");
+    if (!wish["repeats"].is_number_integer() || wish["repeats"] < 2 || wish["repeats"] > 20)
+      throw InputError("calibration", "repeats", wish["repeats"].dump().substr(0, 80), "a whole number from 2 to 20");
     plan.repeats = wish["repeats"].get<int>();
   }
   if (wish.contains("identity")) {
@@ -145,6 +146,11 @@ void CalibrationSession::work() {
         if (guide.reading() && Clock::now() > reader_->until) {
           guide.again();
           trouble_ = "No reading within 5 s: is the handle plugged in, is a wire broken? The same value again.";
+        }
+        if (guide.unsteady() > 0.0 && trouble_.empty()) {
+          char text[100];
+          std::snprintf(text, sizeof text, "The reading was not steady (%.0f counts): hold it still. The same value again.", guide.unsteady());
+          trouble_ = text;
         }
         if (guide.done() && ++at_ == guides_.size()) finish();
       }

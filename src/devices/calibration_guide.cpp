@@ -29,6 +29,7 @@ std::string CalibrationGuide::instruction() const {
 
 void CalibrationGuide::begin() {
   reading_ = !done();
+  unsteady_ = 0.0;
   counts_.clear();
 }
 
@@ -38,6 +39,7 @@ void CalibrationGuide::undo() {
     points_.pop_back();
   }
   reading_ = false;
+  unsteady_ = 0.0;
   counts_.clear();
 }
 
@@ -50,12 +52,17 @@ void CalibrationGuide::take(const DeviceSample& sample) {
   double mean = 0.0, square = 0.0;
   for (double count : counts_) mean += count / static_cast<double>(counts_.size());
   for (double count : counts_) square += (count - mean) * (count - mean);
-  CalibrationPoint point = plan_[at_++];
+  CalibrationPoint point = plan_[at_];
   point.count = mean;
   point.noise = std::sqrt(square / static_cast<double>(counts_.size() - 1));
-  points_.push_back(point);
   reading_ = false;
   counts_.clear();
+  if (point.noise > CalibrationDemands{}.noise) {
+    unsteady_ = point.noise;
+    return;
+  }
+  points_.push_back(point);
+  ++at_;
 }
 
 }  // namespace filum

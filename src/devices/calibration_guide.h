@@ -25,12 +25,14 @@ class CalibrationGuide {
   /// The value asked for is set: begin to read.
   void begin();
   bool reading() const { return reading_; }
-  /// A sample of the handle; ends the reading after kSamples of them.
+  /// A sample of the handle; ends the reading after kSamples of them. One that was not steady is not taken: the value is asked for again.
   void take(const DeviceSample& sample);
   /// Reading could not be used (broken wire, silence): ask for the same value again.
   void again() { reading_ = false; }
   /// Takes the last value back, so that it is asked for again; first of all a reading under way.
   void undo();
+  /// [count], spread of the last reading if it was not steady, else 0.
+  double unsteady() const { return unsteady_; }
   /// Of the samples that a reading takes, 0 to 1.
   double progress() const { return static_cast<double>(counts_.size()) / static_cast<double>(kSamples); }
 
@@ -43,6 +45,7 @@ class CalibrationGuide {
   std::vector<CalibrationPoint> plan_;  // count and noise not yet known
   std::size_t at_ = 0;
   bool reading_ = false;
+  double unsteady_ = 0.0;               // [count]
   std::vector<double> counts_;
   std::vector<CalibrationPoint> points_;
 };

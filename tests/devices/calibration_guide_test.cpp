@@ -39,6 +39,27 @@ TEST(CalibrationGuide, ABrokenWireGivesNoReading) {
   EXPECT_TRUE(guide.points().empty());
 }
 
+TEST(CalibrationGuide, AReadingThatIsNotSteadyIsAskedForAgain) {
+  CalibrationGuide guide(CalibrationGuide::Channel::force, {0.0, 1.0}, 1);
+  const auto read = [&](int spread) {
+    guide.begin();
+    for (int k = 0; guide.reading(); ++k) {
+      DeviceSample s;
+      s.has_grip_force = true;
+      s.raw_force = 1000 + (k % 2 == 0 ? spread : -spread);
+      guide.take(s);
+    }
+  };
+  read(30);
+  EXPECT_NEAR(guide.unsteady(), 30.0, 0.1);
+  EXPECT_TRUE(guide.points().empty());
+  EXPECT_EQ(guide.value(), 0.0);
+  read(15);
+  EXPECT_EQ(guide.unsteady(), 0.0);
+  EXPECT_EQ(guide.points().size(), 1u);
+  EXPECT_EQ(guide.value(), 1.0);
+}
+
 TEST(CalibrationGuide, TheLastValueCanBeTakenBack) {
   CalibrationGuide guide(CalibrationGuide::Channel::force, {0.0, 1.0}, 1);
   const auto read = [&](int count, std::size_t samples) {

@@ -53,8 +53,8 @@ export class ForcepsCalibration {
 
   private beginning(port: string): HTMLElement[] {
     const text = (value: string) => h("input", { type: "text", maxlength: 80, value });
-    const whole = (value: number, most: number) => h("input", { type: "number", min: 1, max: most, value });
-    const name = text("forceps"), sensor = text("unknown"), identity = whole(1, 2147483647), repeats = whole(2, 20);
+    const whole = (value: number, most: number, least = 1) => h("input", { type: "number", min: least, max: most, value });
+    const name = text("forceps"), sensor = text("unknown"), identity = whole(1, 2147483647), repeats = whole(2, 20, 2);
     const angles = text("0, 5, 10, 15, 20, 25"), forces = text("0, 0.2, 0.5, 1, 2, 3");
     const begin = (): void => {
       const [a, f] = [numbersOf(angles.value), numbersOf(forces.value)];
