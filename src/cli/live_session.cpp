@@ -21,12 +21,19 @@ constexpr std::size_t kQueue = 64;              // observations between world an
 constexpr std::uint64_t kStepsAfterDone = 250;  // more than kQueue, so that the last step does not depend on the threads' luck
 constexpr std::uint64_t kStepsAfterScript = 40;  // shorter than it takes for a silent device to count as lost
 constexpr std::uint64_t kArrayHashEvery = 250;  // steps
+constexpr std::uint64_t kMostUnstored = 2048;   // steps, half of what the recorder holds while the disk stalls
 constexpr std::int64_t kShowEvery = 16'667;     // [us]
 constexpr std::int64_t kTick = 1000;            // [us]
 
 void sleep_until(std::int64_t steady_us) noexcept {
   const timespec due{static_cast<time_t>(steady_us / 1'000'000), static_cast<long>(steady_us % 1'000'000) * 1000};
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {}
+}
+
+/// A run that is not paced would outrun a busy disk: it waits, unless the recorder is in trouble and stores no more.
+void wait_for_disk(const Recorder& recorder, std::uint64_t step) {
+  for (RecorderStatus now = recorder.status(); now.healthy && step > now.steps_stored + kMostUnstored; now = recorder.status())
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
 }
 
 void pause_briefly() { std::this_thread::sleep_for(std::chrono::microseconds(500)); }
@@ -126,6 +133,7 @@ void LiveSession::record_step(const Inputs& inputs, std::int64_t begin_us, std::
   const Observation& o = world_.observation();
   options_.recorder->record_step({o.step, begin_us - epoch_us_, static_cast<std::uint32_t>(end_us - begin_us), o.state_hash, inputs});
   if (o.step % kArrayHashEvery != 0) return;
+  if (!options_.paced) wait_for_disk(*options_.recorder, o.step);
   for (const auto& [name, hash] : world_.array_hashes()) options_.recorder->record_array_hash({o.step, std::string_view(name), hash});
 }
 
