@@ -172,7 +172,7 @@ std::string scene_message(const SceneDescription& scene) {
                   {"tools", tools},
                   {"objects", objects},
                   {"field", scene.has_field ? vector_json(scene.field_W) : json()},
-                  {"brain", brain_scene_json(scene.brain)},
+                  {"brain", brain_scene_json(scene.brain, scene.n_tools)},
                   {"needle", needle_scene_json(scene.needle)},
                   {"tissue", tissue_scene_json(scene.tissue)},
                   {"capacity", scene.capacity}});
@@ -226,7 +226,7 @@ std::string frame_body(const Observation& o, const TaskView* task, const std::ve
   w.raw("],\"broken\":").flag(o.broken).raw(",\"break_edge\":").whole(o.break_edge);
   write_cuts(w, o);
   write_objects(w, o);
-  w.raw(",\"brain\":").raw(brain_frame_text(o.brain));
+  w.raw(",\"brain\":").raw(brain_frame_text(o));
   w.raw(",\"needle\":").raw(needle_frame_text(o.needle)).raw(",\"tissue\":").raw(tissue_frame_text(o.tissue));
   w.raw(",\"overruns\":").whole(static_cast<long long>(o.overruns)).raw(",\"real_time_factor\":").number(o.real_time_factor);
   w.raw(",\"task\":").raw(task == nullptr ? "null" : text_of(task_json(*task)));

@@ -1,5 +1,6 @@
 #include "server/encode_brain.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -41,11 +42,20 @@ void append(std::string& out, const double* x, int n, double scale) {
 
 }  // namespace
 
-json brain_scene_json(const BrainDescription& b) {
+json brain_scene_json(const BrainDescription& b, int n_tools) {
   if (b.triangles.empty()) return nullptr;
   json blades = json::array(), veins = json::array();
-  for (const BladeDescription& blade : b.blades)
-    blades.push_back({{"name", blade.name}, {"vertices", flat(blade.vertices)}, {"triangles", flat(blade.triangles)}, {"width", blade.width}, {"grip", blade.grip}});
+  const auto n = static_cast<std::size_t>(n_tools);  // see describe_brain()
+  const bool has_falx = b.blades.back().name == "falx";
+  for (std::size_t i = 0; i < n; ++i) {
+    json forms = json::array();
+    for (std::size_t k = i; k < b.blades.size() - (has_falx ? 1 : 0); k += n) {
+      const BladeDescription& form = b.blades[k];
+      const std::string name = k < n ? form.name + ", " + std::to_string(std::lround(1e3 * form.width)) + " mm" : form.name;
+      forms.push_back({{"name", name}, {"vertices", flat(form.vertices)}, {"triangles", flat(form.triangles)}, {"width", form.width}, {"grip", form.grip}});
+    }
+    blades.push_back({{"name", b.blades[i].name}, {"forms", forms}});
+  }
   for (const VeinShape& v : b.veins) veins.push_back({{"vertex", v.vertex}, {"dura", vector_json(v.dura_W)}});
   return {{"name", b.name},
           {"triangles", flat(b.triangles)},
@@ -54,6 +64,7 @@ json brain_scene_json(const BrainDescription& b) {
           {"veins", veins},
           {"target", b.target_radius > 0.0 ? json{{"position", vector_json(b.target_W)}, {"radius", b.target_radius}} : json()},
           {"section", {{"rest", flat(b.section_rest)}, {"triangles", flat(b.section_triangles)}}},
+          {"falx", has_falx ? json{{"y", b.blades.back().vertices(1, 0)}, {"bottom", b.blades.back().vertices(2, 0)}, {"top", b.blades.back().vertices(2, 2)}} : json()},
           {"bone", b.bone_y < 0.0 ? json(b.bone_y) : json()},
           {"time_compression", b.time_compression}};
 }
@@ -65,7 +76,8 @@ json retraction_json(const RetractionView& r) {
           {"label", r.label},           {"version", r.version},   {"source", r.source}};
 }
 
-std::string brain_frame_text(const BrainObservation& b) {
+std::string brain_frame_text(const Observation& o) {
+  const BrainObservation& b = o.brain;
   if (b.n == 0) return "null";
   std::string out;
   out.reserve(static_cast<std::size_t>(b.n) * 40);
@@ -84,6 +96,7 @@ std::string brain_frame_text(const BrainObservation& b) {
       append(value, row + k, 1, 1.0);
       out += std::string("\"") + kNames[k] + "\":" + value.substr(1, value.size() - 2) + ",";
     }
+    out += "\"form\":" + std::to_string(std::max(0, o.tools[static_cast<std::size_t>(i)].grasped_edge)) + ",";
     out += std::string("\"parked\":") + (blade.parked ? "true" : "false") + ",\"keeps_force\":" + (blade.keeps_force ? "true" : "false") + "}";
   }
   out += "],\"exposed\":";

@@ -10,9 +10,9 @@
 namespace filum {
 
 /// null without a brain.
-nlohmann::json brain_scene_json(const BrainDescription& brain);
+nlohmann::json brain_scene_json(const BrainDescription& brain, int n_tools);
 nlohmann::json retraction_json(const RetractionView& r);
 /// Text of the frame's value, null without a brain.
-std::string brain_frame_text(const BrainObservation& brain);
+std::string brain_frame_text(const Observation& o);
 
 }  // namespace filum

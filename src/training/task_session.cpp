@@ -179,7 +179,8 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security, const st
   r.events = events_;
   if (retraction_) {
     r.pressure = retraction_->report();
-    for (const BladeDescription& blade : scene_.brain.blades) r.pressure->blade_names.push_back(blade.name);
+    for (std::size_t i = 0; i < scene_.brain.blades.size() && static_cast<int>(i) < scene_.n_tools; ++i)
+      r.pressure->blade_names.push_back(scene_.brain.blades[i].name);
     r.pressure->rest = scene_.brain.rest;
     r.pressure->triangles = scene_.brain.triangles;
   }

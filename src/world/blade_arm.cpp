@@ -6,7 +6,7 @@
 namespace filum {
 namespace {
 
-constexpr std::uint32_t kClutch = 1u, kNext = 4u;
+constexpr std::uint32_t kClutch = 1u, kForm = 2u, kNext = 4u;
 
 void event(Observation& o, const char* name, std::size_t tool) noexcept {
   if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, static_cast<int>(tool), 0.0, "-"};
@@ -56,6 +56,13 @@ Pose placed_at(const std::vector<PlacedKey>& keys, double time) noexcept {
     return X;
   }
   return keys.back().X_W;
+}
+
+bool asks_for_form(const BrainModel& model, std::size_t i, const ToolInput& in, double time, BladeState& blade) noexcept {
+  const bool placing = !model.placed[i].empty() && time < model.placed[i].back().t;
+  const std::int32_t before = blade.choosing;
+  blade.choosing = in.valid && !placing && (in.buttons & kForm) != 0 ? 1 : 0;
+  return before == 0 && blade.choosing != 0 && model.blades[i].size() > 1;
 }
 
 void move_blade(const BrainModel& model, std::size_t i, const ToolInput& in, double time, double dt, BladeState& blade, std::int32_t& valid, Observation& o) noexcept {

@@ -4,7 +4,8 @@
 //   arm     keeps its pose, or its force: a yielding joint, c v = (F - f.k) (-k), along the direction k in which the tissue pushed
 //           with F when it was locked; it creeps after tissue that relaxes, and gives way to tissue that swells
 //   placed  goes from key to key of the scene file, then stays on its arm
-// The clutch (button 1) locks while it is pressed; `next` (button 4) locks and, pressed again, frees. Test: blade_arm_test.
+// The clutch (button 1) locks while it is pressed; `next` (button 4) locks and, pressed again, frees. `cut` (button 2) asks for the
+// blade's next form, which it is given in the hand and clear of the tissue only. Test: blade_arm_test.
 
 #include "world/brain_model.h"
 #include "world/inputs.h"
@@ -19,6 +20,9 @@ inline constexpr double kBladeTurnRate = 3.0;  // [rad/s], at most
 
 /// Moves blade `i` by a step dt [s] that begins at `time` [s]; reports what changes into o.
 void move_blade(const BrainModel& model, std::size_t i, const ToolInput& in, double time, double dt, BladeState& blade, std::int32_t& valid, Observation& o) noexcept;
+
+/// True in the step in which a hand that holds the blade begins to ask for its next form.
+bool asks_for_form(const BrainModel& model, std::size_t i, const ToolInput& in, double time, BladeState& blade) noexcept;
 
 /// Where a placed blade is at this time.
 Pose placed_at(const std::vector<PlacedKey>& keys, double time) noexcept;

@@ -77,6 +77,14 @@ void read_brain(const std::string& path, BrainModel& m) {
   m.fem.averaged_pressure = file.flag_or("averaged_pressure", false);
   m.regions = {read_tissue(file.map("grey")), read_tissue(file.map("white"))};
   for (FemMaterial& tissue : m.regions) tissue.young *= dial;
+  if (file.has("falx")) {
+    const YamlNode falx = file.map("falx");
+    m.falx.y = falx.quantity("y", "mm");
+    m.falx.bottom = falx.quantity("bottom", "mm");
+    m.falx.top = falx.quantity("top", "mm");
+    if (!m.falx.present()) falx.refuse("top", "a height above the bottom");
+    falx.text("source");
+  }
   m.fem.mass_damping = measured(file, "mass_damping", "1/s", Range::not_negative());
   m.fem.stiffness_damping = measured(file, "stiffness_damping", "ms", Range::not_negative());
   const RelaxationTerm term{measured(file, "relaxing_share", "-", Range::between(0.0, 0.99)), measured(file, "relaxation_time", "s", Range::positive())};
@@ -97,20 +105,35 @@ std::vector<PlacedKey> read_placed(const YamlNode& blade, const Pose& start) {
   return keys;
 }
 
+/// The blade as it starts and what it can be changed for.
+std::vector<BladeShape> read_forms(const std::string& root, const YamlNode& blade, Model& m) {
+  std::vector<std::string> names = {blade.text("model")};
+  if (blade.has("others"))
+    for (const std::string& other : blade.texts("others")) names.push_back(other);
+  std::vector<BladeShape> forms;
+  for (const std::string& name : names) {
+    if (name.find('/') != std::string::npos || name.find("..") != std::string::npos) blade.refuse("others", "names of files in models/spatula");
+    const std::string file = "models/spatula/" + name + ".yaml";
+    if (std::find(m.sources.begin(), m.sources.end(), file) == m.sources.end()) m.sources.push_back(file);
+    forms.push_back(load_blade(root + "/" + file));
+  }
+  return forms;
+}
+
 void read_blades(const std::string& root, const YamlNode& scene, Model& m, BrainModel& brain) {
   for (const YamlNode& item : scene.items("blades")) {
     if (brain.blades.size() == 2) item.refuse("model", "at most two blades");
-    const std::string file = "models/spatula/" + item.text("model") + ".yaml";
-    m.sources.push_back(file);
-    BladeShape shape = load_blade(root + "/" + file);
-    shape.name = item.text_or("name", shape.name);
+    const std::vector<BladeShape> forms = read_forms(root, item, m);
+    const BladeShape& shape = forms.front();
+    if (!brain.blades.empty() && forms.size() != brain.blades.front().size()) item.refuse("others", "as many as the first blade has");
+    brain.blade_names.push_back(item.text_or("name", shape.name));
     ToolShape& tool = m.description.tools[brain.blades.size()];
-    tool.name = shape.name;
+    tool.name = brain.blade_names.back();
     tool.kind = "spatula";
     tool.jaw_length = shape.length;
     tool.tip_radius = 0.5 * shape.tip_width;
     tool.base_radius = 0.5 * shape.width;
-    brain.blades.push_back(shape);
+    brain.blades.push_back(forms);
     brain.blade_start.push_back(read_pose(item));
     brain.arm_keeps_force.push_back(item.has("arm") && item.choice("arm", {"pose", "force"}) == "force");
     brain.placed.push_back(read_placed(item, brain.blade_start.back()));

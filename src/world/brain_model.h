@@ -21,6 +21,12 @@ struct BridgingVein {
   double strength = 0.0;         // [N]
 };
 
+/// The falx, a stiff sheet in the plane y = `y`, between two heights; empty where `top` is not above `bottom`.
+struct FalxSheet {
+  double y = 0.0, bottom = 0.0, top = 0.0;  // [m]
+  bool present() const noexcept { return top > bottom; }
+};
+
 /// Where somebody else has put a blade on its arm before the trainee takes over: it goes from key to key, then stays.
 struct PlacedKey {
   double t = 0.0;  // [s]
@@ -34,7 +40,8 @@ struct BrainModel {
   std::vector<FemMaterial> regions;
   FemOptions fem;
   SpatulaParameters contact;
-  std::vector<BladeShape> blades;
+  std::vector<std::vector<BladeShape>> blades;  // of each blade the forms it can be given, as many of each, the first to start with
+  std::vector<std::string> blade_names;
   std::vector<Pose> blade_start;
   std::vector<std::vector<PlacedKey>> placed;  // of each blade; none: it is in the hand from the start
   std::vector<char> arm_keeps_force;           // of each blade: what its arm keeps once locked, force or pose
@@ -43,6 +50,7 @@ struct BrainModel {
   double target_radius = 0.0;    // [m], 0: no target
   double time_compression = 1.0; // scene seconds that count as one second of scene time in timers, dose and relaxation
   double bone_y = 0.0;           // [m], see Cortex
+  FalxSheet falx;
   double section_x = 0.0;        // [m], of the plane of the cross-section
   double fastest = 0.3;          // [m/s], and 3 rad/s: a blade follows its hand no faster
   double strongest = 10.0;       // [N], force given to a device at most
@@ -60,6 +68,9 @@ struct BladeState {
   Pose X_DB;                     // of the blade in the hand's frame, as it was taken
   Vec3 kept_force = Vec3::Zero();  // [N], of the tissue on the blade when the arm was locked
   std::int32_t cutting = 0;      // edge pressure above the limit
+  std::int32_t form = 0;         // which of its forms it has
+  std::int32_t choosing = 0;     // the button that changes the form is down
+  Vec3 stop_force = Vec3::Zero();  // [N], of the falx on the blade, for the hand
 };
 
 struct BrainState {

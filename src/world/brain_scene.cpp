@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kTip = 5e-3;      // [m] from the tip's edge that count as the tip
 constexpr double kMargin = 1e-3;   // [m], that tissue may move in a step
+constexpr double kClear = 2e-3;    // [m], distance from the tissue at which a blade may be given another form
 constexpr int kSights = 19;        // lines of sight to the target
 constexpr int kLookEvery = 10;     // steps between two looks at the target
 
@@ -33,9 +34,20 @@ bool covers(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) noexcept
   return (wa * a.z() + wb * b.z() + wc * c.z()) / whole > p.z() + 1e-6;
 }
 
-RigidSurface surface_of(const BladeShape& shape) {
+RigidSurface surface_of_shape(const BladeShape& shape) {
   constexpr double kCell = 2.5e-3;  // [m]
   return blade_surface(shape, std::max(4, static_cast<int>(shape.length / kCell)), std::max(2, static_cast<int>(shape.width / kCell)));
+}
+
+/// As two triangles in the field's frame.
+BladeDescription falx_surface(const BrainModel& m) {
+  const double x = m.cortex.mesh.nodes.row(0).cwiseAbs().maxCoeff();
+  BladeDescription d;
+  d.name = "falx";
+  d.vertices.resize(3, 4);
+  d.vertices << -x, x, x, -x, m.falx.y, m.falx.y, m.falx.y, m.falx.y, m.falx.bottom, m.falx.bottom, m.falx.top, m.falx.top;
+  d.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return d;
 }
 
 FemOptions compressed(FemOptions o, double factor) {
@@ -50,7 +62,8 @@ BrainScene::BrainScene(std::shared_ptr<const BrainModel> model)
       fem_(model_->cortex.mesh, model_->regions, compressed(model_->fem, model_->time_compression), model_->name),
       contact_(model_->contact),
       tree_(model_->cortex.surface, model_->cortex.mesh.nodes),
-      section_(cut_mesh(model_->cortex.mesh, model_->section_x)) {
+      section_(cut_mesh(model_->cortex.mesh, model_->section_x)),
+      falx_(model_->falx, model_->cortex.mesh, model_->cortex.surface_nodes, model_->cortex.held) {
   fem_.hold(model_->cortex.held);
   const auto n = static_cast<std::size_t>(model_->cortex.mesh.n_nodes());
   vertex_of_.assign(n, -1);
@@ -59,19 +72,22 @@ BrainScene::BrainScene(std::shared_ptr<const BrainModel> model)
   area_.assign(model_->cortex.surface_nodes.size(), 0.0);
   hits_.reserve(model_->cortex.surface.size());
   candidates_.reserve(n);
-  contact_.reserve(n);
+  contact_.reserve(n + falx_.size());
   contact_.set_surface(model_->cortex.mesh, model_->cortex.surface);
-  for (const BladeShape& shape : model_->blades) surfaces_.push_back(surface_of(shape));
+  for (const auto& forms : model_->blades) {
+    surfaces_.emplace_back();
+    for (const BladeShape& shape : forms) surfaces_.back().push_back(surface_of_shape(shape));
+  }
   blades_.resize(surfaces_.size());
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    blades_[i].surface = &surfaces_[i];
+    blades_[i].surface = &surfaces_[i].front();
     blades_[i].X_now = blades_[i].X_before = model_->blade_start[i];
   }
   positions_ = model_->cortex.mesh.nodes;
   loads_ = Points::Zero(3, model_->cortex.mesh.n_nodes());
   response_.assign(3 * blades_.size(), Columns4::Zero(4, model_->cortex.mesh.n_nodes()));
   stiffness_.assign(blades_.size(), Mat3::Zero());
-  probes_.reserve(n);
+  probes_.reserve(n + falx_.size());
   fem_.prepare_response();
 }
 
@@ -93,6 +109,7 @@ void BrainScene::step(const Inputs& inputs, BrainState& s, std::array<std::int32
   move_blades(inputs, s, valid, o);
   find_candidates(s);
   contact_.update(fem_, s.fem.u, s.seen, blades_, candidates_, s.contacts);
+  falx_.append(fem_, s.fem.u, contact_.moved());
   pull_veins(s, o);
   s.seen = s.fem.u;
   summary_ = fem_.step(s.fem, contact_.moved(), &loads_);
@@ -107,9 +124,41 @@ void BrainScene::move_blades(const Inputs& inputs, BrainState& s, std::array<std
   const double dt = fem_.options().dt;
   for (std::size_t i = 0; i < blades_.size(); ++i) {
     blades_[i].X_before = s.blades[i].X_W;
-    move_blade(*model_, i, inputs.tools[i], o.time, dt, s.blades[i], valid[i], o);
-    blades_[i].X_now = s.blades[i].X_W;
+    BladeState& blade = s.blades[i];
+    move_blade(*model_, i, inputs.tools[i], o.time, dt, blade, valid[i], o);
+    if (asks_for_form(*model_, i, inputs.tools[i], o.time, blade)) change_form(i, s, o);
+    const Pose wanted = blade.X_W;
+    blade.X_W = beside_falx(model_->falx, surface_of(i, blade), blades_[i].X_before, wanted);
+    const double beyond = blade.X_W.p.y() == wanted.p.y() ? 0.0 : blade.X_W.p.y() - (blade.X_WD * blade.X_DB).p.y();  // of the hand
+    blade.stop_force = std::clamp(kFalxHold * beyond, -kFalxStrongest, kFalxStrongest) * Vec3::UnitY();
+    blades_[i].surface = &surface_of(i, blade);
+    blades_[i].X_now = blade.X_W;
   }
+}
+
+/// The next form, if the blade is in the hand and it and the new form are clear of the tissue.
+void BrainScene::change_form(std::size_t i, BrainState& s, Observation& o) noexcept {
+  BladeState& blade = s.blades[i];
+  const std::size_t next = (static_cast<std::size_t>(blade.form) + 1) % surfaces_[i].size();
+  const bool free = blade.parked == 0 && std::none_of(s.contacts.begin(), s.contacts.end(), [&](const BladeContact& c) { return c.blade == static_cast<std::int32_t>(i); });
+  if (free && clear_of_tissue(s, i, surfaces_[i][next])) {
+    blade.form = static_cast<std::int32_t>(next);
+    event(o, "blade-changed", static_cast<int>(i), static_cast<double>(next), "-");
+  } else {
+    event(o, "blade-change-refused", static_cast<int>(i), blade.parked != 0 ? 1.0 : 0.0, "-");
+  }
+}
+
+/// No node of the surface within kClear of the boxes, in the blade's frame, of the form it has and of the one it is to have.
+bool BrainScene::clear_of_tissue(const BrainState& s, std::size_t i, const RigidSurface& form) const noexcept {
+  const BladeState& blade = s.blades[i];
+  const RigidSurface& now = surface_of(i, blade);
+  const Vec3 low = now.low.cwiseMin(form.low).array() - kClear, high = now.high.cwiseMax(form.high).array() + kClear;
+  const Pose back = blade.X_W.inverse();
+  return std::none_of(model_->cortex.surface_nodes.begin(), model_->cortex.surface_nodes.end(), [&](int node) {
+    const Vec3 q = back * place(s, node);
+    return (q.array() > low.array()).all() && (q.array() < high.array()).all();
+  });
 }
 
 /// Nodes of the triangles near the space each blade swept.
@@ -163,7 +212,7 @@ void BrainScene::feel(const BrainState& s, std::uint64_t step) noexcept {
   probes_ = contact_.moved();
   bool touched = false;
   for (std::size_t k = 0; k < probes_.size(); ++k) {
-    const bool own = s.contacts[k].blade == static_cast<std::int32_t>(blade);
+    const bool own = k < s.contacts.size() && s.contacts[k].blade == static_cast<std::int32_t>(blade);
     touched = touched || (own && s.contacts[k].normal_force > 0.0);
     probes_[k].target = own ? Vec3(Vec3::Unit(axis)) : Vec3(Vec3::Zero());
   }
@@ -173,7 +222,7 @@ void BrainScene::feel(const BrainState& s, std::uint64_t step) noexcept {
   }
   fem_.respond(probes_, response_[column]);
   Vec3 force = Vec3::Zero();
-  for (std::size_t k = 0; k < probes_.size(); ++k)
+  for (std::size_t k = 0; k < s.contacts.size(); ++k)
     if (s.contacts[k].blade == static_cast<std::int32_t>(blade)) force += probes_[k].force;
   stiffness_[blade].col(axis) = force;
 }
@@ -188,7 +237,7 @@ void BrainScene::report(BrainState& s, Observation& o) noexcept {
       if (c.blade != static_cast<std::int32_t>(i)) continue;
       const Vec3 q = blades_[i].X_now.inverse() * place(s, c.node);
       const Vec3 moved = blades_[i].X_now * q - blades_[i].X_before * q - fem_.options().dt * s.fem.v.col(c.node);
-      const Vec3 n = blades_[i].X_now.q * surfaces_[i].normals[static_cast<std::size_t>(c.triangle)];
+      const Vec3 n = blades_[i].X_now.q * surface_of(i, blade).normals[static_cast<std::size_t>(c.triangle)];
       if (c.slipping != 0 && c.share == 1.0) sliding = std::max(sliding, (moved - moved.dot(n) * n).norm());
       if (c.share < 1.0) edge = std::max(edge, o.brain.pressure[static_cast<std::size_t>(vertex_of_[static_cast<std::size_t>(c.node)])]);
     }
@@ -264,12 +313,13 @@ void BrainScene::observe(const BrainState& s, const std::array<std::int32_t, 3>&
     tool.v_W = (blade.X_W.p - blades_[i].X_before.p) / dt;
     tool.X_WT = blade.X_W;
     tool.X_WD = blade.X_WD;
-    tool.f_T_W = blade.force;
+    tool.f_T_W = blade.force + blade.stop_force;
     tool.input_valid = valid[i] != 0;
+    tool.grasped_edge = blade.form;  // a spatula has no jaws: which of its forms it has
     BladeObservation& b = o.brain.blades[i];
     b.force_W = blade.force;
     b.torque_W = blade.torque;
-    const PivotForce pivot = pivot_force(blade.X_W.p, blade.X_W * Vec3(0, 0, model_->blades[i].grip), blade.force, blade.torque);
+    const PivotForce pivot = pivot_force(blade.X_W.p, blade.X_W * Vec3(0, 0, model_->blades[i][static_cast<std::size_t>(blade.form)].grip), blade.force, blade.torque);
     b.push_W = pivot.push;
     b.turn_W = pivot.turn;
     b.parked = blade.parked != 0;
@@ -311,10 +361,14 @@ void describe_brain(const BrainModel& model, BrainDescription& b) {
   b.rest.resize(3, static_cast<Eigen::Index>(nodes.size()));
   for (std::size_t k = 0; k < nodes.size(); ++k) b.rest.col(static_cast<Eigen::Index>(k)) = model.cortex.mesh.nodes.col(nodes[k]);
   for (const Triangle& t : model.cortex.surface) b.triangles.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
-  for (const BladeShape& shape : model.blades) {
-    const RigidSurface surface = surface_of(shape);
-    b.blades.push_back({shape.name, surface.vertices, surface.triangles, shape.width, shape.grip});
-  }
+  // blade i is tool i; after the blades the second form of each, and so on; a falx comes last, where it stands
+  for (std::size_t form = 0; form < model.blades.front().size(); ++form)
+    for (std::size_t i = 0; i < model.blades.size(); ++i) {
+      const BladeShape& shape = model.blades[i][form];
+      const RigidSurface surface = surface_of_shape(shape);
+      b.blades.push_back({form == 0 ? model.blade_names[i] : shape.name, surface.vertices, surface.triangles, shape.width, shape.grip});
+    }
+  if (model.falx.present()) b.blades.push_back(falx_surface(model));
   for (const BridgingVein& v : model.veins) b.veins.push_back({vertex(v.node), v.dura_W});
   const BrainSection section = cut_mesh(model.cortex.mesh, model.section_x);
   b.section_triangles = section.triangles;
@@ -328,7 +382,10 @@ void describe_brain(const BrainModel& model, BrainDescription& b) {
 
 void BrainScene::match(const BrainState& s) {
   fem_.match(s.fem);
-  for (std::size_t i = 0; i < blades_.size(); ++i) blades_[i].X_before = blades_[i].X_now = s.blades[i].X_W;
+  for (std::size_t i = 0; i < blades_.size(); ++i) {
+    blades_[i].X_before = blades_[i].X_now = s.blades[i].X_W;
+    blades_[i].surface = &surface_of(i, s.blades[i]);
+  }
 }
 
 std::array<std::pair<const char*, std::uint64_t>, 8> brain_hashes(const BrainState& s) noexcept {
@@ -340,9 +397,9 @@ std::array<std::pair<const char*, std::uint64_t>, 8> brain_hashes(const BrainSta
     contacts = hash_bytes(row.data(), sizeof row, contacts);
   }
   for (const BladeState& b : s.blades) {
-    for (const Vec3* v : {&b.X_W.p, &b.X_WD.p, &b.X_DB.p, &b.force, &b.torque, &b.kept_force}) blades = hash_bytes(v->data(), 3 * sizeof(double), blades);
+    for (const Vec3* v : {&b.X_W.p, &b.X_WD.p, &b.X_DB.p, &b.force, &b.torque, &b.kept_force, &b.stop_force}) blades = hash_bytes(v->data(), 3 * sizeof(double), blades);
     for (const Quat* q : {&b.X_W.q, &b.X_WD.q, &b.X_DB.q}) blades = hash_bytes(q->coeffs().data(), 4 * sizeof(double), blades);
-    const std::array<double, 4> row = {b.slid, double(b.parked), double(b.toggling), double(b.cutting)};
+    const std::array<double, 6> row = {b.slid, double(b.parked), double(b.toggling), double(b.cutting), double(b.form), double(b.choosing)};
     blades = hash_bytes(row.data(), sizeof row, blades);
   }
   std::uint64_t rest = hash_bytes(&s.exposed, sizeof s.exposed, hash_bytes(s.torn.data(), s.torn.size() * sizeof(std::int32_t)));

@@ -6,6 +6,7 @@
 #include "collision/surface_tree.h"
 #include "world/brain_model.h"
 #include "world/brain_section.h"
+#include "world/falx.h"
 #include "world/inputs.h"
 #include "world/observation.h"
 
@@ -26,6 +27,9 @@ class BrainScene {
 
  private:
   void move_blades(const Inputs& inputs, BrainState& s, std::array<std::int32_t, 3>& valid, Observation& o) noexcept;
+  void change_form(std::size_t i, BrainState& s, Observation& o) noexcept;
+  bool clear_of_tissue(const BrainState& s, std::size_t i, const RigidSurface& form) const noexcept;
+  const RigidSurface& surface_of(std::size_t i, const BladeState& blade) const noexcept { return surfaces_[i][static_cast<std::size_t>(blade.form)]; }
   void find_candidates(const BrainState& s) noexcept;
   void pull_veins(BrainState& s, Observation& o) noexcept;
   void measure(const BrainState& s, Observation& o) noexcept;
@@ -40,10 +44,11 @@ class BrainScene {
   SpatulaContact contact_;
   SurfaceTree tree_;
   BrainSection section_;
+  FalxContact falx_;
   std::vector<Columns4> response_;  // of the tissue to a unit translation of each blade along each axis, found last
   std::vector<Mat3> stiffness_;     // [N/m], of each blade: a column a step
   std::vector<MovedNode> probes_;
-  std::vector<RigidSurface> surfaces_;
+  std::vector<std::vector<RigidSurface>> surfaces_;  // of each blade, of each of its forms
   std::vector<MovingBlade> blades_;
   std::vector<int> vertex_of_;   // node -> vertex of the surface, -1 inside
   std::vector<double> area_;     // [m2], of each vertex

@@ -1,7 +1,9 @@
 import * as THREE from "three";
 import { describe, expect, it } from "vitest";
 import type { Frame, Scene } from "@viewer/messages";
-import { Brain, kPressureStops, pressureColour, pressureView, tissueColour } from "@viewer/scene/brain";
+import { Brain, kPressureStops, pressureColour, pressureView } from "@viewer/scene/brain";
+import { cortexUv, vesselTree } from "@viewer/scene/cortex_surface";
+import { random } from "@viewer/scene/textures";
 import { BrainPanel, share } from "@viewer/ui/brain_panel";
 import { mapColour, pressureAt, pressureMapPanel } from "@viewer/ui/pressure_map";
 import { fullScale, rampColour, sectionValues } from "@viewer/ui/section_view";
@@ -9,14 +11,14 @@ import { frameAt, kScene } from "./sample_frames.mjs";
 
 const shape = {
   name: "block", triangles: [0, 1, 2, 1, 3, 2], rest: [0, 0, 0, 0.01, 0, 0, 0, 0.01, 0, 0.01, 0.01, 0],
-  blades: [{ name: "spatula", vertices: [-0.005, 0, 0, 0.005, 0, 0, 0, 0, 0.08], triangles: [0, 1, 2], width: 0.01, grip: 0.1 }],
-  veins: [{ vertex: 3, dura: [0.02, 0.01, 0.004] as [number, number, number] }], target: null, bone: -0.007, section: { rest: [0, 0, 0, 0, 0.01, 0, 0, 0, -0.01], triangles: [0, 1, 2] }, time_compression: 10,
+  blades: [{ name: "spatula", forms: [10, 5].map((width) => ({ name: `${width} mm`, vertices: [-0.0005 * width, 0, 0, 0.0005 * width, 0, 0, 0, 0, 0.08], triangles: [0, 1, 2], width: 0.001 * width, grip: 0.1 })) }],
+  veins: [{ vertex: 3, dura: [0.02, 0.01, 0.004] as [number, number, number] }], target: null, falx: { y: 0, bottom: -0.02, top: 0.004 }, bone: -0.007, section: { rest: [0, 0, 0, 0, 0.01, 0, 0, 0, -0.01], triangles: [0, 1, 2] }, time_compression: 10,
 };
 const scene = { ...kScene, brain: shape } as unknown as Scene;
 const retraction = { blind: false, pressure: 24, band: "orange", dose: 80, dose_band: "yellow", loaded: 125, perfusion: -1, bands: [10, 20, 30], dose_bands: [75, 150, 225], alarm: 40, label: "Training heuristic, not a clinical limit", version: "1", source: "rats" };
 function frame(pressure: number[], torn = 0): Frame {
   const made = frameAt(1, 1, 10);
-  return { ...made, task: { ...made.task, retraction }, brain: { positions: shape.rest.map((x, i) => x - (i % 3 === 2 ? 0.002 : 0)), pressure, blades: [{ force: 0.42, area: 1.3, peak: 24, mean: 12, tip: 24, parked: true, keeps_force: true }], exposed: 0.5, veins_torn: [torn], section: { positions: [0, 0, -0.003, 0, 0.01, 0, 0, 0, -0.01], stress: [1.4] } } } as unknown as Frame;
+  return { ...made, task: { ...made.task, retraction }, brain: { positions: shape.rest.map((x, i) => x - (i % 3 === 2 ? 0.002 : 0)), pressure, blades: [{ force: 0.42, area: 1.3, peak: 24, mean: 12, tip: 24, form: 1, parked: true, keeps_force: true }], exposed: 0.5, veins_torn: [torn], section: { positions: [0, 0, -0.003, 0, 0.01, 0, 0, 0, -0.01], stress: [1.4] } } } as unknown as Frame;
 }
 
 describe("pressure colours", () => {
@@ -35,9 +37,6 @@ describe("pressure colours", () => {
     expect(pressureColour(29.9, "threshold", 30).cover).toBe(0);
     expect(pressureColour(30, "threshold", 30).cover).toBeGreaterThan(0.9);
   });
-  it("of the tissue are colours", () => {
-    for (let x = -35; x < 35; x += 3) for (const c of tissueColour(x, 0.7 * x, -5)) expect(c).toSatisfy((v: number) => v >= 0 && v <= 1);
-  });
 });
 
 describe("brain", () => {
@@ -49,7 +48,25 @@ describe("brain", () => {
     expect(cortex.geometry.getAttribute("position").getZ(3)).toBeCloseTo(-2, 5);
     const colour = cortex.geometry.getAttribute("color");
     expect(colour.getZ(2)).toBeGreaterThan(colour.getY(2)); // purple at 40 mmHg
-    expect(colour.getX(0)).toBeGreaterThan(colour.getZ(0)); // tissue elsewhere
+    expect(colour.getW(2)).toBeGreaterThan(0.9);
+    expect(colour.getW(0)).toBe(0); // tissue elsewhere
+  });
+  it("draws the form that the blade has", () => {
+    const brain = new Brain(shape, true);
+    brain.update(frame([0, 0, 0, 0]));
+    const held = brain.group.children.find((c) => c instanceof THREE.Group && c.children.length === 2) as THREE.Group;
+    expect(held.children.map((form) => form.visible)).toEqual([false, true]);
+  });
+  it("unrolls the walls of a fissure, so that the picture is not drawn out on them", () => {
+    const uv = cortexUv([0, 0.002, 0, 0, 0.001, -0.01, 0, -0.002, 0, 0, -0.001, -0.01], 1000);
+    expect(Math.abs(uv[3] - uv[1]) * 80).toBeCloseTo(11, 4); // 10 mm down and 1 mm across
+    expect(Math.abs(uv[7] - uv[5]) * 80).toBeCloseTo(11, 4);
+  });
+  it("branches its vessels from thick to thin, the same each time", () => {
+    const tree = (seed: number) => vesselTree(random(seed), 40, 40, 0, 1, 0.1);
+    expect(tree(3)).toEqual(tree(3));
+    expect(tree(3).length).toBeGreaterThan(5);
+    for (const { widths } of tree(3)) for (let k = 1; k < widths.length; ++k) expect(widths[k]).toBeLessThan(widths[k - 1]);
   });
   it("shortens a vein that has torn", () => {
     const length = (torn: number) => {
@@ -71,6 +88,7 @@ describe("brain panel", () => {
     expect(text).toContain("Training heuristic, not a clinical limit");
     expect(text).toContain("0.42 N");
     expect(text).toContain("on its arm");
+    expect(text).toContain("5 mm; C off the tissue: 10 mm");
     expect(text).toContain("40 mmHg");
   });
   it("bars never run over", () => {
@@ -117,7 +135,7 @@ describe("a blind step", () => {
     const brain = new Brain(shape, true);
     brain.update(blind);
     const colour = (brain.group.children[0] as THREE.Mesh<THREE.BufferGeometry>).geometry.getAttribute("color");
-    expect(colour.getX(0)).toBeGreaterThan(colour.getZ(0));
+    expect([0, 1, 2, 3].map((i) => colour.getW(i))).toEqual([0, 0, 0, 0]);
     panel.show(seen, scene);
     expect(meters.some((meter) => meter.hidden)).toBe(false);
     expect(pressureView.blind).toBe(false);

@@ -11,6 +11,7 @@ namespace {
 BrainModel one_blade(bool keeps_force) {
   BrainModel m;
   m.blade_start = {Pose{}};
+  m.blades = {{BladeShape{}, BladeShape{}}};
   m.placed.resize(1);
   m.arm_keeps_force = {static_cast<char>(keeps_force)};
   return m;
@@ -88,6 +89,23 @@ TEST(BladeArm, ThePlacedBladeGoesItsWayAndThenStays) {
   EXPECT_NEAR(d.blade.X_W.p.z(), -0.02, 1e-4);
   d.move(hand_at(Vec3(0.01, 0, 0)), 1.5);
   EXPECT_NEAR(d.blade.X_W.p.z(), -0.02, 1e-4);
+}
+
+TEST(BladeArm, ANewFormIsAskedForOncePerPress) {
+  Driven d(false);
+  int asked = 0;
+  const auto ask = [&](std::uint32_t buttons, double time = 0.0) { asked += asks_for_form(d.model, 0, hand_at(Vec3::Zero(), buttons), time, d.blade) ? 1 : 0; };
+  for (const std::uint32_t buttons : {0u, 2u, 2u, 0u, 2u}) ask(buttons);
+  EXPECT_EQ(asked, 2);
+  ask(0);
+  d.model.placed[0] = {{0.0, Pose{}}, {1.0, Pose{}}};
+  ask(2, 0.5);
+  EXPECT_EQ(asked, 2) << "while somebody else puts it in";
+  d.model.placed[0].clear();
+  d.model.blades[0].pop_back();
+  ask(0);
+  ask(2);
+  EXPECT_EQ(asked, 2) << "there is no other";
 }
 
 /// The scene of the task: the force is kept while the tissue relaxes under the blade.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "base/error.h"
 #include "world/brain_file.h"
@@ -68,6 +69,47 @@ TEST(BrainScene, SameInputsGiveTheSameStatesAndARestoredStateGoesOnTheSame) {
   b.restore(kept);
   press(b, 9e-3, 40);
   EXPECT_EQ(a.state_hash(), b.state_hash());
+}
+
+/// Asks for the next form with the button held for two steps; returns what was said.
+std::string ask_for_form(World& world, const Vec3& moved) {
+  std::string said;
+  for (const std::uint32_t buttons : {2u, 2u, 0u}) {
+    Inputs in = inputs_at(world, moved);
+    in.tools[0].buttons = buttons;
+    world.step(in);
+    for (int k = 0; k < world.observation().n_events; ++k)
+      if (const std::string name = world.observation().events[static_cast<std::size_t>(k)].name; name.starts_with("blade-")) said += name + " ";
+  }
+  return said;
+}
+
+TEST(BrainScene, ABladeIsChangedOffTheTissueOnly) {
+  World world(scene("press-to-target")), again(scene("press-to-target"));
+  const auto& forms = world.description().brain.blades;  // one blade: its forms
+  ASSERT_EQ(forms.size(), 4u);
+  for (const std::size_t form : {1u, 2u, 3u, 0u, 1u, 2u}) {
+    EXPECT_EQ(ask_for_form(world, Vec3::Zero()), "blade-changed ");
+    EXPECT_EQ(world.observation().tools[0].grasped_edge, static_cast<int>(form));
+  }
+  EXPECT_EQ(forms[2].width, 15e-3);
+  press(world, 11e-3, 320);
+  ASSERT_GT(world.observation().brain.blades[0].contacts, 0);
+  const double wide = world.observation().brain.blades[0].force_W.z();
+  EXPECT_EQ(ask_for_form(world, Vec3(0, 0, -11e-3)), "blade-change-refused ") << "it presses";
+  EXPECT_EQ(world.observation().tools[0].grasped_edge, 2);
+  press(world, 7e-3, 200);
+  EXPECT_EQ(world.observation().brain.blades[0].contacts, 0);
+  EXPECT_EQ(ask_for_form(world, Vec3(0, 0, -7e-3)), "blade-change-refused ") << "a millimetre above the tissue, to which it could be bent";
+  EXPECT_EQ(ask_for_form(world, Vec3::Zero()), "blade-changed ");
+  // a state goes on with its form, in another world too
+  const State kept = world.state();
+  again.restore(kept);
+  press(world, 11e-3, 320);
+  press(again, 11e-3, 320);
+  EXPECT_EQ(world.state_hash(), again.state_hash());
+  EXPECT_EQ(again.observation().tools[0].grasped_edge, 3);
+  EXPECT_NE(world.observation().brain.blades[0].force_W.z(), wide);
 }
 
 TEST(BrainScene, ABladeOnItsArmStaysAndASilentOneToo) {

@@ -41,7 +41,7 @@ export const kShortcuts: ShortcutGroup[] = [
       { keys: "Shift", does: "with a movement key: slowly" },
       { keys: "Ctrl", does: "clutch: move the mouse without moving the hand" },
       { keys: "P", does: "catch the mouse in the field (Esc lets go)" },
-      { keys: "C", does: "cut" },
+      { keys: "C", does: "cut; a spatula, in the hand and off the tissue: its next bend or width" },
       { keys: "N", does: "next; a spatula: lock or free its arm" },
       { keys: "Gamepad", does: "sticks: hands; triggers: grips; bumpers: depth; X: cut; A: next" },
     ],

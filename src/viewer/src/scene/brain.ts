@@ -2,6 +2,7 @@
 // bridging veins, the target. It draws what frames say; colours say it a second time beside the panel's words.
 import * as THREE from "three";
 import type { BrainShape, BrainState, Frame } from "../messages";
+import { cortexMaterial, cortexUv } from "./cortex_surface";
 
 const kMm = 1000;
 export type PressureMode = "scale" | "threshold" | "off";
@@ -25,12 +26,11 @@ export function pressureColour(mmHg: number, mode: PressureMode, threshold: numb
   return { colour: [0, 1, 2].map((k) => a[k] + s * (b[k] - a[k])) as [number, number, number], cover: 0.9 };
 }
 
-/// Colour of the tissue without pressure: grey-pink, redder in furrows, with small vessels.
-export function tissueColour(x: number, y: number, z: number): [number, number, number] {
-  const vessel = Math.abs(Math.sin(0.31 * x + 1.7 * Math.sin(0.13 * y + 0.4))) < 0.09 || Math.abs(Math.sin(0.23 * y + 1.3 * Math.sin(0.19 * x))) < 0.06;
-  const deep = Math.min(1, Math.max(0, -z / 12)), grain = 0.03 * Math.sin(1.9 * x + 2.3 * y);
-  const base: [number, number, number] = [0.85 - 0.22 * deep + grain, 0.66 - 0.3 * deep + grain, 0.6 - 0.28 * deep + grain];
-  return vessel ? [0.66, 0.2 - 0.05 * deep, 0.19] : base;
+const kLinear = new THREE.Color();
+/// As the renderer counts: linear light.
+function linear([r, g, b]: [number, number, number]): [number, number, number] {
+  kLinear.setRGB(r, g, b, THREE.SRGBColorSpace);
+  return [kLinear.r, kLinear.g, kLinear.b];
 }
 
 function mesh(vertices: number[], triangles: number[], material: THREE.Material): THREE.Mesh<THREE.BufferGeometry> {
@@ -40,6 +40,18 @@ function mesh(vertices: number[], triangles: number[], material: THREE.Material)
   geometry.computeVertexNormals();
   const made = new THREE.Mesh(geometry, material);
   made.castShadow = made.receiveShadow = true;
+  return made;
+}
+
+/// A form of a blade: polished, so brighter along its middle, with a ground edge.
+function bladeMesh(form: BrainShape["blades"][number]["forms"][number], steel: THREE.Material): THREE.Mesh {
+  const made = mesh(form.vertices, nearTip(form.vertices, form.triangles), steel), shine = new Float32Array(form.vertices.length);
+  for (let i = 0; i < shine.length; i += 3) {
+    const out = (2 * Math.abs(form.vertices[i])) / form.width, along = form.vertices[i + 2] / kShown;
+    shine.fill(Math.max(0.35, 1 - 0.3 * out * out - 0.25 * along), i, i + 3);
+  }
+  made.geometry.setAttribute("color", new THREE.BufferAttribute(shine, 3));
+  made.add(new THREE.LineSegments(new THREE.EdgesGeometry(made.geometry, 60), new THREE.LineBasicMaterial({ color: 0xf2f6f8 })));
   return made;
 }
 
@@ -57,30 +69,28 @@ function nearTip(vertices: number[], triangles: number[]): number[] {
 export class Brain {
   readonly group = new THREE.Group();
   private readonly cortex: THREE.Mesh<THREE.BufferGeometry>;
-  private readonly tissue: Float32Array;
-  private readonly blades: THREE.Group[] = [];
+  private readonly blades: THREE.Group[] = []; // each with a mesh for each of its forms
   private readonly arms: RetractorArm[];
   private readonly veins: { mesh: THREE.Mesh; vertex: number; dura: THREE.Vector3 }[];
 
   constructor(shape: BrainShape, painted: boolean) {
-    const wet = painted
-      ? new THREE.MeshLambertMaterial({ vertexColors: true, side: THREE.DoubleSide })
-      : new THREE.MeshPhysicalMaterial({ vertexColors: true, roughness: 0.45, clearcoat: 0.85, clearcoatRoughness: 0.18, side: THREE.DoubleSide });
-    this.cortex = mesh(shape.rest, shape.triangles, wet);
-    this.tissue = new Float32Array(shape.rest.length);
-    for (let i = 0; i < shape.rest.length; i += 3) this.tissue.set(tissueColour(shape.rest[i] * kMm, shape.rest[i + 1] * kMm, shape.rest[i + 2] * kMm), i);
-    this.cortex.geometry.setAttribute("color", new THREE.BufferAttribute(this.tissue.slice(), 3));
+    this.cortex = mesh(shape.rest, shape.triangles, cortexMaterial(painted));
+    this.cortex.geometry.setAttribute("uv", new THREE.BufferAttribute(cortexUv(shape.rest, kMm), 2));
+    this.cortex.geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array((4 * shape.rest.length) / 3), 4));
     this.group.add(this.cortex, rim(shape));
-    const steel = painted ? new THREE.MeshLambertMaterial({ color: 0xaab4bb, emissive: 0x4c545a, side: THREE.DoubleSide }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, side: THREE.DoubleSide });
+    const steel = painted ? new THREE.MeshPhongMaterial({ color: 0xb4bdc4, specular: 0x8a949c, shininess: 40, side: THREE.DoubleSide }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, side: THREE.DoubleSide });
+    const polished = steel.clone();
+    polished.vertexColors = true;
     for (const blade of shape.blades) {
       const held = new THREE.Group();
-      held.add(mesh(blade.vertices, nearTip(blade.vertices, blade.triangles), steel));
+      for (const form of blade.forms) held.add(bladeMesh(form, polished));
       this.blades.push(held);
       this.group.add(held);
     }
-    this.arms = shape.blades.map((blade, k) => new RetractorArm(shape, blade.grip, k, steel));
+    this.arms = shape.blades.map((blade, k) => new RetractorArm(shape, blade.forms[0].grip, k, steel));
     for (const arm of this.arms) this.group.add(arm.group);
     if (shape.bone !== null) this.group.add(boneWall(shape));
+    if (shape.falx) this.group.add(falxSheet(shape, shape.falx));
     const blue = new THREE.MeshStandardMaterial({ color: 0x3a2a66, roughness: 0.35 });
     this.veins = shape.veins.map(({ vertex, dura }) => {
       const vein = new THREE.Mesh(new THREE.CylinderGeometry(0.7, 0.7, 1, 12), blue);
@@ -107,6 +117,7 @@ export class Brain {
       if (!pose) return;
       blade.position.set(pose.position[0], pose.position[1], pose.position[2]).multiplyScalar(kMm);
       blade.quaternion.set(pose.quaternion[1], pose.quaternion[2], pose.quaternion[3], pose.quaternion[0]);
+      blade.children.forEach((form, at) => { form.visible = at === (state.blades[k]?.form ?? 0); });
       this.arms[k].update(blade, state.blades[k]?.parked ?? false);
     });
     this.veins.forEach((vein, k) => this.stretch(vein, array, state.veins_torn[k] === 1));
@@ -114,9 +125,10 @@ export class Brain {
 
   private colour(state: BrainState): void {
     const colour = this.cortex.geometry.getAttribute("color") as THREE.BufferAttribute, array = colour.array as Float32Array;
-    for (let i = 0; i < state.pressure.length && 3 * i + 2 < array.length; ++i) {
+    for (let i = 0; i < state.pressure.length && 4 * i + 3 < array.length; ++i) {
       const over = pressureColour(state.pressure[i], pressureView.blind ? "off" : pressureView.mode, pressureView.threshold);
-      for (let k = 0; k < 3; ++k) array[3 * i + k] = (1 - over.cover) * this.tissue[3 * i + k] + over.cover * over.colour[k];
+      array.set(linear(over.colour), 4 * i);
+      array[4 * i + 3] = over.cover;
     }
     colour.needsUpdate = true;
   }
@@ -181,6 +193,15 @@ function boneWall(shape: BrainShape): THREE.Mesh {
   const wall = new THREE.Mesh(new THREE.BoxGeometry(2 * x, y + face, depth), new THREE.MeshLambertMaterial({ color: 0xdccfb2 }));
   wall.position.set(0, 0.5 * (face - y), -0.5 * depth);
   return wall;
+}
+
+/// The falx: a pale fold of dura between the hemispheres.
+function falxSheet(shape: BrainShape, falx: NonNullable<BrainShape["falx"]>): THREE.Mesh {
+  const { x } = extent(shape), height = (falx.top - falx.bottom) * kMm;
+  const sheet = new THREE.Mesh(new THREE.BoxGeometry(2 * x, 0.4, height), new THREE.MeshPhysicalMaterial({ color: 0xe6ddcb, roughness: 0.55, clearcoat: 0.4 }));
+  sheet.position.set(0, falx.y * kMm, falx.bottom * kMm + 0.5 * height);
+  sheet.castShadow = sheet.receiveShadow = true;
+  return sheet;
 }
 
 /// The bone about the window: a frame around the block, for the eye only.

@@ -20,6 +20,7 @@ export class Stage {
   readonly scene = new THREE.Scene();
   readonly key = new THREE.DirectionalLight(0xfff1dd, 2.3);
   private readonly coaxial = new THREE.DirectionalLight(0xf4f8ff, 0.4);
+  private readonly ambient = new THREE.AmbientLight(0xffece4, 0); // light thrown about between wet walls
   private readonly content = new THREE.Group();
   private readonly flatShadows = new FlatShadows();
   private materials: Materials;
@@ -46,7 +47,7 @@ export class Stage {
     this.key.shadow.bias = -0.0004;
     this.key.shadow.normalBias = 0.012;
     this.key.shadow.radius = 3.2;
-    this.scene.add(this.key, this.key.target, this.coaxial, this.coaxial.target, this.content, this.flatShadows.group);
+    this.scene.add(this.key, this.key.target, this.coaxial, this.coaxial.target, this.ambient, this.content, this.flatShadows.group);
   }
 
   /// Exchanges the materials; the next frame fills the scene again.
@@ -84,6 +85,9 @@ export class Stage {
       this.focusHeight = message.field[2] * kMm;
     }
     if (message.brain) this.focusHeight = 0;
+    this.key.intensity = message.brain ? 1.7 : 2.3; // into a fissure light comes along the view
+    this.coaxial.intensity = message.brain ? 1.1 : 0.4;
+    this.ambient.intensity = message.brain ? (this.painted ? 0.7 : 0.35) : 0;
     this.threadRadius = message.thread_radius * kMm;
     this.addSheet();
     for (const bar of [message.post, message.base]) if (bar) this.addBar(bar);

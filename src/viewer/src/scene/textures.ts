@@ -2,7 +2,7 @@
 import * as THREE from "three";
 
 /// Repeatable noise, so that the same page always looks the same.
-function random(seed: number): () => number {
+export function random(seed: number): () => number {
   let state = seed >>> 0;
   return () => {
     state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
@@ -17,7 +17,7 @@ function canvasOf(size: number): [HTMLCanvasElement, CanvasRenderingContext2D] {
 }
 
 /// Sum of four octaves of value noise that wraps round at the edges. Values 0 ... 1.
-function cloud(size: number, cells: number, seed: number): Float32Array {
+export function cloud(size: number, cells: number, seed: number): Float32Array {
   const out = new Float32Array(size * size);
   const next = random(seed);
   let weight = 0.5;
@@ -47,7 +47,7 @@ function finish(canvas: HTMLCanvasElement, repeat: number, colour: boolean): THR
 }
 
 /// Normal map of a height field given as a function of the pixel.
-function normalMap(height: Float32Array, size: number, strength: number): HTMLCanvasElement {
+export function normalMap(height: Float32Array, size: number, strength: number): HTMLCanvasElement {
   const [canvas, g] = canvasOf(size);
   const image = g.createImageData(size, size);
   for (let y = 0; y < size; ++y) {

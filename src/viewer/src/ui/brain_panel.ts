@@ -42,6 +42,7 @@ export class BrainPanel {
   private readonly pressure = new Bar("Pressure", "mmHg");
   private readonly dose = new Bar("Dose", "mmHg min");
   private readonly rows: HTMLElement[];
+  private readonly forms: HTMLElement[];
   private readonly timer = h("output", { class: "brainrow" }, "");
   private readonly seen = h("output", { class: "brainrow" }, "");
   private readonly note = h("p", { class: "note" }, "");
@@ -53,6 +54,7 @@ export class BrainPanel {
   constructor(scene: Scene, private readonly redraw: () => void) {
     this.section = new SectionView(scene, redraw);
     this.rows = (scene.brain?.blades ?? []).map(() => h("output", { class: "brainrow" }, ""));
+    this.forms = (scene.brain?.blades ?? []).map(() => h("output", { class: "brainrow" }, ""));
     this.modes = kModes.map(([mode, label]) => h("button", { class: "segment", onclick: () => this.choose(mode) }, label));
     const stops = kPressureStops.map(([at, colour]) => `${css(colour)} ${((100 * at) / 40).toFixed(0)}%`).join(", ");
     const ramp = h("div", { class: "ramp" });
@@ -62,7 +64,7 @@ export class BrainPanel {
     const colours = h("div", { class: "segments", role: "group", "aria-label": "Colours of the pressure" }, ...this.modes);
     this.shown = [this.pressure.element, legend, this.dose.element, ...this.rows, colours, this.section.element];
     this.hidden.hidden = true;
-    this.element.append(h("h2", {}, "Retraction"), this.hidden, this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows, colours, this.section.element, this.note);
+    this.element.append(h("h2", {}, "Retraction"), this.hidden, this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows, ...this.forms, colours, this.section.element, this.note);
     this.choose(pressureView.mode);
   }
 
@@ -92,6 +94,10 @@ export class BrainPanel {
     }
     if (!brain) return;
     setText(this.seen, scene.brain?.target ? `Target seen: ${(100 * brain.exposed).toFixed(0)} %` : "");
+    brain.blades.forEach((blade, k) => {
+      const forms = scene.brain?.blades[k]?.forms ?? [];
+      if (forms.length > 1) setText(this.forms[k], `${forms[blade.form]?.name ?? "blade"}; C off the tissue: ${forms[(blade.form + 1) % forms.length].name}`);
+    });
     brain.blades.forEach((blade, k) => setText(this.rows[k], `${scene.brain?.blades[k]?.name ?? "blade"}: ${blade.force.toFixed(2)} N on ${blade.area.toFixed(1)} cm², mean ${blade.mean.toFixed(0)}, tip ${blade.tip.toFixed(0)} mmHg${blade.parked ? (blade.keeps_force ? ", on its arm, which keeps the force" : ", on its arm") : ""}`));
   }
 }

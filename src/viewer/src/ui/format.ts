@@ -42,8 +42,15 @@ export function day(iso: string): string {
   return date.toLocaleString(undefined, { year: "numeric", month: "short", day: "numeric", hour: "2-digit", minute: "2-digit" });
 }
 
+/// Events whose name says too little.
+const kEventTexts: Record<string, string> = {
+  "blade-changed": "Blade changed",
+  "blade-change-refused": "Blade not changed: lift it clear of the tissue and free it from its arm first",
+};
+
 /// "thread-overload" -> "Thread overload"
 export function words(name: string): string {
+  if (kEventTexts[name]) return kEventTexts[name];
   if (name === "sparc" || name === "ldlj") return name.toUpperCase();
   const text = name.replace(/[-_]+/g, " ");
   return text.charAt(0).toUpperCase() + text.slice(1);

@@ -172,6 +172,7 @@ export class LivePage implements Page {
 
   private addEvent(event: TimedEvent): void {
     if (kFrequent.includes(event.name)) return;
+    if (event.name === "blade-change-refused") this.app.sound.play("warn");
     const value = event.unit !== "-" && event.value !== 0 ? ` ${quantity(event.value, event.unit)}` : "";
     this.events.prepend(h("li", {}, h("span", { class: "when" }, `${event.time.toFixed(1)} s`), event.text || words(event.name) + value));
     while (this.events.children.length > kEventsShown) this.events.lastElementChild!.remove();

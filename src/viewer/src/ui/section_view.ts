@@ -105,7 +105,8 @@ export class SectionView {
   /// Where the blades cross the plane.
   private bladeLines(frame: Frame, plane: number): [number[], number[]][] {
     const lines: [number[], number[]][] = [];
-    (this.scene.brain?.blades ?? []).forEach((blade, k) => {
+    (this.scene.brain?.blades ?? []).forEach(({ forms }, k) => {
+      const blade = forms[frame.brain?.blades[k]?.form ?? 0];
       const pose = frame.tools[k]?.pose;
       if (!pose) return;
       const [w, qx, qy, qz] = pose.quaternion, place = (i: number): number[] => {
