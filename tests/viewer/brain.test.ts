@@ -58,7 +58,7 @@ describe("brain", () => {
     expect(held.children.map((form) => form.visible)).toEqual([false, true]);
   });
   it("unrolls the walls of a fissure, so that the picture is not drawn out on them", () => {
-    const uv = cortexUv([0, 0.002, 0, 0, 0.001, -0.01, 0, -0.002, 0, 0, -0.001, -0.01], 1000);
+    const uv = cortexUv([0, 0.002, -0.001, 0, 0.001, -0.011, 0, -0.002, -0.001, 0, -0.001, -0.011], [0, -1, 0, 0, -1, 0, 0, 1, 0, 0, 1, 0], 1000);
     expect(Math.abs(uv[3] - uv[1]) * 80).toBeCloseTo(11, 4); // 10 mm down and 1 mm across
     expect(Math.abs(uv[7] - uv[5]) * 80).toBeCloseTo(11, 4);
   });

@@ -75,7 +75,7 @@ export class Brain {
 
   constructor(shape: BrainShape, painted: boolean) {
     this.cortex = mesh(shape.rest, shape.triangles, cortexMaterial(painted));
-    this.cortex.geometry.setAttribute("uv", new THREE.BufferAttribute(cortexUv(shape.rest, kMm), 2));
+    this.cortex.geometry.setAttribute("uv", new THREE.BufferAttribute(cortexUv(shape.rest, this.cortex.geometry.getAttribute("normal").array, kMm), 2));
     this.cortex.geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array((4 * shape.rest.length) / 3), 4));
     this.group.add(this.cortex, rim(shape));
     const steel = painted ? new THREE.MeshPhongMaterial({ color: 0xb4bdc4, specular: 0x8a949c, shininess: 40, side: THREE.DoubleSide }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, side: THREE.DoubleSide });

@@ -6,12 +6,14 @@ import { cloud, normalMap, random } from "./textures";
 const kTile = 80; // [mm], width of the picture; beyond it is mirrored
 const kSize = 2048; // [texel]
 const kStep = 0.5; // [mm] of a vessel's way
+const kBranches = 18; // of a tree, at most
 
 interface Reach { points: number[]; widths: number[] } // [mm], x y of each point, and its width
 
 /// Ways of a vessel and all its branches: the heading sways, the width dwindles, branches leave to either side in turn.
 export function vesselTree(next: () => number, x: number, y: number, heading: number, width: number, thinnest: number): Reach[] {
   const reaches: Reach[] = [];
+  let branches = 0;
   const grow = (px: number, py: number, way: number, wide: number, side: number): void => {
     const points = [px, py], widths = [wide];
     const straight = way;
@@ -25,7 +27,7 @@ export function vesselTree(next: () => number, x: number, y: number, heading: nu
       points.push(px, py);
       widths.push(wide);
       since += kStep;
-      if (since > 3 + 12 * wide && next() < 0.28 && reaches.length < 90) {
+      if (since > 5 + 14 * wide && next() < 0.2 && ++branches < kBranches) {
         since = 0;
         side = -side;
         const share = 0.45 + 0.3 * next();
@@ -75,8 +77,8 @@ function paintVessels(g: CanvasRenderingContext2D): void {
     const x = kTile / 2 + away * Math.cos(angle), y = kTile / 2 + away * Math.sin(angle);
     return vesselTree(next, x, y, angle + Math.PI + 1.6 * (next() - 0.5), widest * (0.7 + 0.3 * next()), thinnest);
   }).flat();
-  const fine = trees(34, 0.22, 0.05), veins = trees(7, 1.25, 0.1), arteries = trees(9, 0.8, 0.07);
-  stroke(g, fine, "rgba(176, 62, 58, 0.55)", 1, 0);
+  const fine = trees(9, 0.2, 0.05), veins = trees(3, 1.2, 0.14), arteries = trees(4, 0.75, 0.09);
+  stroke(g, fine, "rgba(176, 62, 58, 0.4)", 1, 0);
   stroke(g, veins, "rgba(92, 40, 48, 0.20)", 1, 0.35);
   stroke(g, veins, "rgb(98, 44, 66)", 1, 0.04);
   stroke(g, veins, "rgb(122, 60, 84)", 0.62, 0);
@@ -109,13 +111,14 @@ function cortexTextures(): { map: THREE.Texture; normal: THREE.Texture } | null 
   return (made = { map: textures[0], normal: textures[1] });
 }
 
-/// Where each vertex [mm] lies on the picture: from above, and down the walls of a fissure or the side of a lobe as if unrolled.
-export function cortexUv(rest: number[], scale: number): Float32Array {
+/// Where each vertex lies on the picture: from above, and down the walls of a fissure or the side of a lobe, which their normals tell, as if
+/// unrolled. `scale`: mm in a unit of `rest`.
+export function cortexUv(rest: number[], normals: ArrayLike<number>, scale: number): Float32Array {
   const uv = new Float32Array((2 * rest.length) / 3);
   for (let i = 0, k = 0; i < rest.length; i += 3, k += 2) {
-    const x = rest[i] * scale, y = rest[i + 1] * scale, z = rest[i + 2] * scale;
+    const x = rest[i] * scale, y = rest[i + 1] * scale, z = rest[i + 2] * scale, wall = Math.min(1, Math.max(-1, -1.6 * normals[i + 1]));
     uv[k] = x / kTile + 0.5;
-    uv[k + 1] = (y + (y < 0 ? -z : z)) / kTile + 0.5;
+    uv[k + 1] = (y + wall * z) / kTile + 0.5;
   }
   return uv;
 }
