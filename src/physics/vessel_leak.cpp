@@ -10,21 +10,25 @@
 namespace filum {
 namespace {
 
-/// Distance from q to the wall of a part, its held end left out; 0 inside is not told from outside: edges that overlap are closed anyway.
+/// Distance from q to the wall of a part, its held end left out; 0 within the wall: edges pressed together are closed.
 double distance_to(const VesselMesh& mesh, const Points& x, int part, const Vec3& q, Vec3& nearest) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), facing = 0.0;
+  bool inside = false;
   for (const WallFace& f : mesh.faces) {
     if (mesh.part[static_cast<std::size_t>(f.element)] != part || f.surface == WallSurface::end) continue;
     const auto& nodes = mesh.elements[static_cast<std::size_t>(f.element)];
     const auto at = [&](std::size_t c) { return Vec3(x.col(nodes[static_cast<std::size_t>(f.corner[c])])); };
     for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{1, 2}, {2, 3}}) {
       const Vec3 p = closest_on_triangle(q, at(0), at(i), at(j)).point;
-      if ((p - q).squaredNorm() >= least) continue;
-      least = (p - q).squaredNorm();
+      const double distance = (p - q).norm(), out = (q - p).dot((at(i) - at(0)).cross(at(j) - at(0)).normalized());
+      if (distance > least + 1e-12 || (distance > least - 1e-12 && std::abs(out) <= facing)) continue;  // of ties the face that q faces most tells
+      least = std::min(least, distance);
+      facing = std::abs(out);
+      inside = out < 0.0;
       nearest = p;
     }
   }
-  return std::sqrt(least);
+  return inside ? 0.0 : least;
 }
 
 /// Least gap over the thickness of the edge at one node of the ring, with the middle of it.

@@ -19,6 +19,8 @@ constexpr int kShortenings = 8;
 constexpr double kQuiet = 0.1;       // of the tolerance: below this a step needs no iteration at all
 constexpr double kLonger = 4.0;      // than the step taken last: more is not tried at first
 constexpr double kBedding = 0.006;   // of the mean diagonal of the elements' matrix
+constexpr double kMeetingReach = 0.5;   // of the wall's thickness
+constexpr double kMeetingShare = 0.1;   // stiffness of a node against a face, of lambda times thickness: a cube of the wall a tenth as wide as high
 constexpr double kStiff = 1.0;       // [N/m], springs above this come into the first matrix
 constexpr double kViolent = 0.1;     // [N], unbalanced force of a node at the first guess that is too far off to be trusted
 
@@ -93,7 +95,12 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   clamp_.resize(mesh_.edge_ring.size());
   pressure_.assign(clamp_.size(), 0.0);
   longest_move_ = 0.0;
-  for (const WallLayer& l : layers) longest_move_ += l.thickness;
+  double squeeze = 0.0;
+  for (const WallLayer& l : layers) {
+    longest_move_ += l.thickness;
+    squeeze += l.law.lambda * l.thickness;
+  }
+  meetings_ = WallMeetings(mesh_, kMeetingReach * longest_move_, kMeetingShare * squeeze);
   loads_.resize(kMostLoads);
   for (Points* p : {&x_, &target_, &residual_, &trial_x_, &trial_residual_, &push_, &trial_push_}) p->setZero(3, n);
   turn_.resize(static_cast<std::size_t>(n));
@@ -173,6 +180,7 @@ double VesselWall::evaluate(const WallState& state) noexcept {
     add_pressure_forces(mesh_, pressure_, x, trial_push_);
     r += trial_push_;
   }
+  energy += meetings_.add_forces(x, r);
   for (int k = 0; k < n_loads_; ++k) {
     const Load& l = loads_[static_cast<std::size_t>(k)];
     Vec3 at = -l.at;

@@ -16,6 +16,7 @@
 #include "physics/vessel_wall_element.h"
 #include "physics/vessel_wall_factor.h"
 #include "physics/vessel_wall_springs.h"
+#include "physics/wall_meeting.h"
 #include "physics/wall_state.h"
 
 namespace filum {
@@ -67,6 +68,8 @@ class VesselWall {
   void place_clamp(int part, const Pose& X_WC) noexcept { clamp_[static_cast<std::size_t>(part)] = X_WC; }
   /// Transmural pressure [Pa] on the inner faces of a part. Stays until told otherwise.
   void set_pressure(int part, double pressure) noexcept { pressure_[static_cast<std::size_t>(part)] = pressure; }
+  /// Finds where the cut edges of different parts may touch in the coming step, from the shape given to refit(). Without it they do not.
+  void meet(const WallState& state) noexcept { meetings_.find(mesh_, tree_, state.x); }
   WallSummary step(WallState& state) noexcept;
 
   // --- questions ---------------------------------------------------------------------------------------------------
@@ -124,6 +127,7 @@ class VesselWall {
   std::vector<Mat3> rest_frame_;
   SlabFactor factor_;
   WallSprings springs_;
+  WallMeetings meetings_;
   SurfaceTree tree_;
   std::vector<Pose> clamp_;
   std::vector<double> pressure_;      // [Pa], of each part

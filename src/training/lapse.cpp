@@ -66,6 +66,10 @@ LapseRules load_lapse_rules(const std::string& path) {
   r.tear = file.quantity("tear", "um", Range::positive());
   r.back_wall = file.quantity_or("back_wall", "deg", r.back_wall, Range::between(0.0, std::numbers::pi));
   r.overlap = file.number_or("edge_overlap_thicknesses", r.overlap, Range::positive());
+  r.tight = file.quantity_or("too_tight", "N/m", r.tight, Range::positive());
+  r.loose_gap = file.number_or("loose_gap_thicknesses", r.loose_gap, Range::positive());
+  r.line_gap = file.number_or("line_gap_thicknesses", r.line_gap, Range::positive());
+  r.neighbours = file.quantity_or("neighbours", "deg", r.neighbours, Range::between(0.0, std::numbers::pi));
   r.thread_inside = file.quantity_or("thread_inside", "mm", r.thread_inside, Range::positive());
   file.finish();
   return r;
@@ -103,6 +107,8 @@ std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>&
     if (s.obliquity > rules.oblique) found.push_back({"oblique", i, s.time, s.obliquity * 180.0 / std::numbers::pi, "deg"});
     if (widest > rules.wide_bite * thickness) found.push_back({"wide-bite", i, s.time, widest / thickness, "thicknesses"});
     if (s.depth < rules.least_depth - 1e-6) found.push_back({"partial-thickness", i, s.time, s.depth, "share"});
+    const double bite = std::isnan(s.bite[1]) ? s.bite[0] : std::min(s.bite[0], s.bite[1]);
+    if (s.tension > rules.tight * bite) found.push_back({"too-tight", i, s.time, s.tension / bite, "N/m"});
     if (s.torn > rules.tear) found.push_back({"wall-tear", i, s.time, s.torn, "m"});
   }
   const std::vector<double> gaps = spacings_of(stitches);
@@ -133,6 +139,31 @@ void find_back_walls(const LapseRules& rules, const TissueObservation& t, const 
 void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found) {
   if (join.thread_inside > rules.thread_inside) found.push_back({"thread-in-lumen", -1, time, join.thread_inside, "m"});
   if (join.overlap > rules.overlap) found.push_back({"edge-overlap", -1, time, join.overlap, "thicknesses"});
+}
+
+void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, double time,
+                     std::vector<Lapse>& found) {
+  if (!scene.lumen || join.sector_gap.empty()) return;
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const double width = kTurn / static_cast<double>(join.sector_gap.size());
+  const auto wrapped = [](double a) { return a - kTurn * std::floor(a / kTurn); };
+  std::vector<std::pair<double, int>> at;  // angle of each stitch, ascending
+  for (std::size_t k = 0; k < stitches.size(); ++k) {
+    const double angle = wrapped(stitches[k].position / scene.radius);
+    at.emplace_back(angle, static_cast<int>(k));
+    const auto sector = std::min(static_cast<std::size_t>(angle / width), join.sector_gap.size() - 1);
+    const double gap = join.sector_gap[sector] / scene.thickness;
+    if (gap > rules.loose_gap) found.push_back({"loose-knot", static_cast<int>(k), time, gap, "thicknesses"});
+  }
+  std::sort(at.begin(), at.end());
+  for (std::size_t k = 0; k < at.size() && at.size() > 1; ++k) {
+    const double from = at[k].first, span = wrapped(at[(k + 1) % at.size()].first - from);
+    if (span > rules.neighbours) continue;
+    double widest = 0.0;
+    for (std::size_t s = 0; s < join.sector_gap.size(); ++s)
+      if (const double middle = wrapped(width * (static_cast<double>(s) + 0.5) - from); middle < span) widest = std::max(widest, join.sector_gap[s] / scene.thickness);
+    if (widest > rules.line_gap) found.push_back({"disrupted-line", at[k].second, time, widest, "thicknesses"});
+  }
 }
 
 }  // namespace filum

@@ -4,6 +4,7 @@
 // all marks are simulator-derived estimates. A stitch is the pass into one side of a cut together with the next pass out of the
 // other side, or a lone pass. Test: lapse_test.
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,11 @@ struct LapseRules {
   double back_wall = 1.05;        // [rad], around a vessel, between the two bites of one way through its lumen
   double thread_inside = 0.5e-3;  // [m], thread left in the lumen
   double overlap = 1.0;           // thicknesses, of the cut edges past each other
+  double tight = 100.0;           // [N/m], pull of the thread left in a stitch, for each length of bite
+  // of joins whose stitches are to be tied, under pressure; infinite: not looked for
+  double loose_gap = std::numeric_limits<double>::infinity();  // thicknesses, between the edges at a stitch
+  double line_gap = std::numeric_limits<double>::infinity();   // thicknesses, between two neighbouring stitches
+  double neighbours = 1.75;       // [rad], around the vessel: stitches further apart have no line between them yet
 };
 
 LapseRules load_lapse_rules(const std::string& path);
@@ -56,5 +62,9 @@ void find_back_walls(const LapseRules& rules, const TissueObservation& tissue, c
                      const std::vector<Stitch>& stitches, std::vector<Lapse>& found);
 /// "thread-in-lumen", "edge-overlap".
 void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found);
+/// "loose-knot": the edges stand apart at a stitch that was to be tied; "disrupted-line": they do between two neighbours. From the gaps of the
+/// sectors under pressure.
+void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, double time,
+                     std::vector<Lapse>& found);
 
 }  // namespace filum

@@ -159,7 +159,10 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join) const {
   r.lapses = lapses_of(task_.lapses, r.stitches, r.thickness);
   find_back_walls(task_.lapses, tissue_, pass_time_, scene_.tissue, r.stitches, r.lapses);
   r.join = join;
-  if (join) find_join_lapses(task_.lapses, *join, time_, r.lapses);
+  if (join) {
+    find_join_lapses(task_.lapses, *join, time_, r.lapses);
+    find_gap_lapses(task_.lapses, *join, scene_.tissue, r.stitches, time_, r.lapses);
+  }
   r.soundness = tissue_.soundness;
   r.rules = task_.lapses.title;
   return r;

@@ -40,6 +40,10 @@ void NeedleScene::match(const State& s) noexcept {
   if (tissue_) tissue_->match(s.tissue);
 }
 
+void NeedleScene::handle_buttons(State& s, std::uint32_t buttons, Observation& o) const noexcept {
+  if (tissue_) tissue_->handle_clamp(s.tissue, buttons, o);
+}
+
 double NeedleScene::stop_angle(const InstrumentParameters& tool) const noexcept {
   return 2.0 * body_.shape().wire_radius / tool.jaw_length;
 }

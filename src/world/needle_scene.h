@@ -24,6 +24,8 @@ class NeedleScene {
   /// After a state was restored.
   void match(const State& s) noexcept;
 
+  /// Buttons of all tools together; the clamp of a vessel hears them.
+  void handle_buttons(State& s, std::uint32_t buttons, Observation& o) const noexcept;
   /// Jaws that close on the wire stop at it and squeeze it. Call before the instruments move.
   void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
   /// After the instruments have moved from `from`: tells the needle where they are, takes it, lets it go.

@@ -66,6 +66,7 @@ void read_stumps(const std::string& root, const YamlNode& node, Model& m, Vessel
   v.wall = preset.wall;
   v.wall.dt = dt;
   v.clamp.gap = node.quantity("gap", "mm", Range::not_negative());
+  v.closed_gap = node.quantity_or("closed_gap", "mm", 0.0, {-1e-3, v.clamp.gap});
   v.clamp.turn = node.quantity("turn", "deg", Range::between(-std::numbers::pi, std::numbers::pi));
   Mat3 bar;
   bar << -Vec3::UnitX(), Vec3::UnitZ(), Vec3::UnitY();

@@ -19,7 +19,8 @@ struct VesselModel {
   double thickness = 0.0;             // [m]
   Vec3 cut_along = Vec3::UnitX();     // unit, direction of the cut at rest; of a vessel: where its angle is zero
   bool lumen = false;                 // two stumps in a double clamp
-  DoubleClamp clamp;                  // of these
+  DoubleClamp clamp;                  // of these, as first made
+  double closed_gap = 0.0;            // [m], where it can be slid to
   TubeShape shape;                    // of each
   double radius = 0.0;                // [m], outer, as first made
 };

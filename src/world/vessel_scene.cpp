@@ -1,12 +1,15 @@
 #include "world/vessel_scene.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/hash.h"
 
 namespace filum {
 namespace {
 
+constexpr double kSlideSpeed = 0.5e-3, kTurnSpeed = 1.5;  // [m/s], [rad/s], of the clamp
+constexpr std::uint32_t kCut = 2, kNext = 4;             // buttons (world/inputs.h)
 constexpr int kSettling = 500;  // steps at most until the tissue stands still at the start
 
 PassObservation::State state_of(const NeedleTrack& t) noexcept {
@@ -32,6 +35,8 @@ VesselState VesselScene::start(const Vec3& point) {
   wall_.settle(s.wall, kSettling);
   wall_.refit(s.wall);
   s.tracks.point_before = point;
+  s.clamp.gap = model_.clamp.gap;
+  s.clamp.turn = model_.clamp.turn;
   return s;
 }
 
@@ -60,6 +65,42 @@ void VesselScene::hold(const VesselState& s, const Pose& X_WN, const RodState& t
   contact_.hold(wall_, s.wall, s.touches, thread, on_thread);
 }
 
+void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept {
+  if (!model_.lumen) return;
+  ClampState& c = s.clamp;
+  const std::uint32_t pressed = buttons & ~c.down, let_go = c.down & ~buttons;
+  const auto say = [&](const char* name, double value, const char* unit) {
+    if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, -1, value, unit};
+  };
+  if ((pressed & kNext) != 0) {
+    c.over = c.over != 0 ? 0 : 1;
+    say("clamp-turned", c.over != 0 ? std::numbers::pi : 0.0, "rad");
+  }
+  if ((pressed & kCut) != 0) c.closing = c.closing != 0 ? 0 : 1;
+  if ((let_go & kCut) != 0) say("clamp-slid", c.gap, "m");
+  c.down = buttons & (kCut | kNext);
+  DoubleClamp now = model_.clamp;
+  now.gap = c.gap;
+  now.turn = c.turn;
+  const double gap = (buttons & kCut) == 0 ? c.gap : c.closing != 0 ? model_.closed_gap : model_.clamp.gap;
+  now = approach(now, gap, model_.clamp.turn + (c.over != 0 ? std::numbers::pi : 0.0), model_.wall.dt, kSlideSpeed, kTurnSpeed);
+  c.gap = now.gap;
+  c.turn = now.turn;
+}
+
+void VesselScene::move_clamp(const VesselState& s) noexcept {
+  if (!model_.lumen) return;
+  DoubleClamp now = model_.clamp;
+  now.gap = s.clamp.gap;
+  now.turn = s.clamp.turn;
+  if (now.gap == model_.clamp.gap && now.turn == model_.clamp.turn) {  // as the mesh was made, without rounding
+    for (int part = 0; part < 2; ++part) wall_.place_clamp(part, {});
+    return;
+  }
+  const auto motion = clamp_motion(model_.clamp, now, model_.shape.stretch * model_.shape.length);
+  for (int part = 0; part < 2; ++part) wall_.place_clamp(part, motion[static_cast<std::size_t>(part)]);
+}
+
 void VesselScene::press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states,
                         std::vector<Vec3>& force, std::vector<Vec3>& torque) noexcept {
   contact_.press(wall_, s.wall, tools, states, force, torque);
@@ -73,6 +114,8 @@ void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread,
     o.events[static_cast<std::size_t>(o.n_events++)] = {events[static_cast<std::size_t>(k)].name, -1, events[static_cast<std::size_t>(k)].value, "N"};
   contact_.follow(wall_, s.wall, s.touches, s.tracks, thread, on_thread);
   for (int part = 0; part < std::min(2, wall_.n_parts()); ++part) wall_.set_pressure(part, s.pressure[static_cast<std::size_t>(part)]);
+  move_clamp(s);
+  wall_.meet(s.wall);
   const WallSummary summary = wall_.step(s.wall);
   if (!summary.sound && o.n_events < static_cast<int>(o.events.size()))
     o.events[static_cast<std::size_t>(o.n_events++)] = {"solver-trouble", -1, summary.residual, "N"};
@@ -135,6 +178,9 @@ std::uint64_t hash_vessel(const VesselState& s) noexcept {
     const std::array<double, 5> row = {touch.arc, touch.load, touch.normal.x(), touch.normal.y(), touch.normal.z()};
     h = hash_bytes(row.data(), sizeof(row), hash_point(touch.at, h));
   }
+  const ClampState& c = s.clamp;
+  const std::array<double, 5> clamp = {c.gap, c.turn, static_cast<double>(c.over), static_cast<double>(c.closing), static_cast<double>(c.down)};
+  h = hash_bytes(clamp.data(), sizeof(clamp), h);
   const std::array<double, 9> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,
                                      t.point_before.x(), t.point_before.y(), t.point_before.z(), s.pressure[0], s.pressure[1]};
   return hash_point(t.point.at, hash_bytes(row.data(), sizeof(row), h));

@@ -19,6 +19,9 @@ class VesselScene {
   void size_observation(Observation& o) const;
 
   void hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
+  /// The clamp's buttons: `next` (4) turns it over and back, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
+  /// step then carries the stumps along.
+  void handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept;
   /// Jaws against the tissue; adds to the forces on them. Before step().
   void press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states,
              std::vector<Vec3>& force, std::vector<Vec3>& torque) noexcept;
@@ -30,6 +33,8 @@ class VesselScene {
   void match(const VesselState& s) noexcept { wall_.refit(s.wall); }
 
  private:
+  void move_clamp(const VesselState& s) noexcept;
+
   const VesselModel& model_;
   VesselWall wall_;
   NeedleTracks tracks_;

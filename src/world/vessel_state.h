@@ -22,10 +22,20 @@ struct TouchState {
   std::array<ThreadTouch, kMostTouches> touches;
 };
 
+/// The double clamp as the trainee's buttons have left it. Part of the state.
+struct ClampState {
+  double gap = 0.0;            // [m], between the cut edges as long as they are free
+  double turn = 0.0;           // [rad], about the bar
+  std::int32_t over = 0;       // turned over, or on the way there
+  std::int32_t closing = 0;    // which way it slid last
+  std::uint32_t down = 0;      // buttons that are pressed
+};
+
 struct VesselState {
   WallState wall;
   TrackState tracks;
   TouchState touches;
+  ClampState clamp;
   std::array<double, 2> pressure{};  // [Pa], transmural, of each stump
 };
 

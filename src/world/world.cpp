@@ -142,6 +142,7 @@ void World::step(const Inputs& inputs) noexcept {
 }
 
 void World::Impl::read_inputs(const Inputs& inputs) noexcept {
+  std::uint32_t buttons = 0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const ToolInput& in = inputs.tools[i];
     const bool sound = in.valid && in.X_WD.finite() && std::abs(in.X_WD.q.norm() - 1.0) < 1e-3 && std::isfinite(in.grip_angle) &&
@@ -153,7 +154,9 @@ void World::Impl::read_inputs(const Inputs& inputs) noexcept {
     if (!sound) continue;
     c = {in.X_WD, in.grip_angle, in.grip_force, in.has_grip_force, true};
     c.X_WD.q.normalize();
+    buttons |= in.buttons;
   }
+  if (needle) needle->handle_buttons(state, buttons, observation);
 }
 
 void World::Impl::move_instruments() noexcept {

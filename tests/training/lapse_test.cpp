@@ -177,5 +177,49 @@ TEST(Lapse, ThreadLeftInTheLumen) {
   EXPECT_STREQ(found[2].name, "edge-overlap");
 }
 
+TEST(Lapse, ThreadLeftTooTightForItsBite) {
+  auto t = good();
+  for (std::size_t k : {2u, 3u}) t.passes[k].tension = 25e-3;
+  EXPECT_FALSE(has(lapses(t), "too-tight")) << "83 N/m";
+  for (std::size_t k : {2u, 3u}) t.passes[k].bite_entry = t.passes[k].bite_exit = 0.2e-3;
+  const auto found = lapses(t);
+  ASSERT_TRUE(has(found, "too-tight")) << "125 N/m";
+  EXPECT_EQ(found[0].stitch, 1);
+  EXPECT_NEAR(found[0].value, 125.0, 1e-9);
+}
+
+/// Stitches at 45 and 135 degrees (sectors 1 and 3 of eight), then the gaps of the sectors.
+std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 135.0) {
+  LapseRules rules;
+  rules.loose_gap = 0.5;
+  rules.line_gap = 0.3;
+  TissueDescription scene = tube();
+  scene.thickness = kThickness;
+  std::vector<Stitch> stitches(2);
+  stitches[0].position = kRadius * 67.5 * std::acos(-1.0) / 180.0;
+  stitches[1].position = kRadius * (second + 22.5) * std::acos(-1.0) / 180.0;
+  JoinReport join;
+  for (const double g : gaps) join.sector_gap.push_back(g * kThickness);
+  std::vector<Lapse> found;
+  find_gap_lapses(rules, join, scene, stitches, 3.0, found);
+  return found;
+}
+
+TEST(Lapse, GapsAtStitchesAndBetweenThem) {
+  EXPECT_TRUE(gap_lapses({2, 0, 0, 0, 2, 2, 2, 2}).empty()) << "where nothing is sewn yet there is no line";
+  const auto loose = gap_lapses({2, 0, 0, 0.6, 2, 2, 2, 2});
+  ASSERT_EQ(loose.size(), 1u);
+  EXPECT_STREQ(loose[0].name, "loose-knot");
+  EXPECT_EQ(loose[0].stitch, 1);
+  const auto line = gap_lapses({2, 0, 0.4, 0, 2, 2, 2, 2});
+  ASSERT_EQ(line.size(), 1u);
+  EXPECT_STREQ(line[0].name, "disrupted-line");
+  EXPECT_NEAR(line[0].value, 0.4, 1e-12);
+  EXPECT_TRUE(gap_lapses({2, 0, 0.4, 0, 0, 2, 2, 2}, 180.0).empty()) << "too far apart to be neighbours";
+  const auto seam = gap_lapses({0.4, 0, 2, 2, 2, 2, 2, 0}, 315.0);
+  ASSERT_EQ(seam.size(), 1u) << "over the seam of the angle";
+  EXPECT_STREQ(seam[0].name, "disrupted-line");
+}
+
 }  // namespace
 }  // namespace filum

@@ -148,6 +148,39 @@ TEST(VesselScene, JawsTouchStumpsInsideAndOutside) {
   }
 }
 
+/// The button `cut` held slides the clamp until the edges meet, `next` turns it over; a scene restored on the way goes on alike.
+TEST(VesselScene, ClampSlidesAndTurnsOver) {
+  World w(stumps());
+  Inputs in;
+  in.tools[0].valid = true;
+  in.tools[0].X_WD.p = Vec3(-6e-3, 4e-3, 8e-3);
+  const auto run = [&](World& world, int steps, std::uint32_t buttons) {
+    in.tools[0].buttons = buttons;
+    for (int k = 0; k < steps; ++k) world.step(in);
+  };
+  const VesselMesh& mesh = stumps()->vessel->mesh;
+  const int first = mesh.edge_ring[0][0], second = mesh.edge_ring[1][0];
+  const auto y = [&](int node) { return w.observation().tissue.positions(1, node); };
+  const double open = y(second) - y(first);
+  run(w, 1, 0);
+  run(w, 250, 2);
+  EXPECT_NEAR(y(second) - y(first), open - 0.25e-3, 20e-6) << "half a second at 0.5 mm/s";
+  run(w, 10, 0);
+  EXPECT_NEAR(w.state().tissue.clamp.gap, stumps()->vessel->clamp.gap - 0.25e-3, 1e-9) << "let go, it stays";
+  run(w, 100, 2);
+  EXPECT_NEAR(w.state().tissue.clamp.gap, stumps()->vessel->clamp.gap - 0.15e-3, 1e-9) << "pressed again, it slides back";
+  run(w, 2, 0);
+  World other(stumps());
+  other.restore(w.state());
+  run(w, 1200, 4);
+  EXPECT_NEAR(w.state().tissue.clamp.turn, 3.14159265, 1e-6);
+  const Vec3 r = w.observation().tissue.positions.col(first), before = mesh.nodes.col(first);
+  EXPECT_NEAR(r.x(), -before.x(), 20e-6);
+  EXPECT_NEAR(r.z(), -before.z(), 20e-6);
+  run(other, 1200, 4);
+  EXPECT_EQ(w.state_hash(), other.state_hash());
+}
+
 TEST(VesselScene, StumpsSurviveWildHands) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     World w(stumps());

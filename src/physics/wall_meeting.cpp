@@ -1,0 +1,115 @@
+#include "physics/wall_meeting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/point_triangle.h"
+
+namespace filum {
+namespace {
+
+constexpr int kRows = 2;         // of elements behind the cut
+constexpr double kAside = 0.5;   // of the reach, by which a node may stand beside a cut face that it meets
+
+Box around(const std::vector<int>& nodes, const Points& x, double reach) noexcept {
+  Box b{x.col(nodes.front()), x.col(nodes.front())};
+  for (const int i : nodes) {
+    b.low = b.low.cwiseMin(x.col(i));
+    b.high = b.high.cwiseMax(x.col(i));
+  }
+  b.low.array() -= reach;
+  b.high.array() += reach;
+  return b;
+}
+
+bool holds(const Box& b, const Vec3& q) noexcept { return (q.array() >= b.low.array()).all() && (q.array() <= b.high.array()).all(); }
+
+}  // namespace
+
+WallMeetings::WallMeetings(const VesselMesh& mesh, double reach, double stiffness) : reach_(reach), stiffness_(stiffness) {
+  const std::size_t parts = mesh.edge_ring.size();
+  std::vector<int> last(parts, 0);  // slab of the cut edge
+  for (std::size_t i = 0; i < mesh.slab.size(); ++i) {
+    int& most = last[static_cast<std::size_t>(mesh.node_part[i])];
+    most = std::max(most, mesh.slab[i]);
+  }
+  rim_.resize(parts);
+  std::vector<char> on_surface(mesh.slab.size(), 0);
+  for (const WallFace& f : mesh.faces)
+    for (const int c : f.corner) on_surface[static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(f.element)][static_cast<std::size_t>(c)])] = 1;
+  for (std::size_t i = 0; i < mesh.slab.size(); ++i) {
+    const auto part = static_cast<std::size_t>(mesh.node_part[i]);
+    if (on_surface[i] && mesh.slab[i] + kRows >= last[part]) rim_[part].push_back(static_cast<int>(i));
+  }
+  std::size_t all = 0;
+  for (const auto& nodes : rim_) all += nodes.size();
+  list_.resize(all);
+  found_.reserve(256);
+}
+
+void WallMeetings::find(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x) noexcept {
+  n_ = 0;
+  for (std::size_t a = 0; a < rim_.size(); ++a)
+    for (std::size_t b = 0; b < rim_.size(); ++b) {
+      if (a == b || rim_[a].empty() || rim_[b].empty()) continue;
+      const Box other = around(rim_[b], x, reach_);
+      for (const int i : rim_[a]) {
+        if (static_cast<std::size_t>(n_) == list_.size()) return;
+        if (holds(other, x.col(i)) && meet(mesh, tree, x, i, list_[static_cast<std::size_t>(n_)])) ++n_;
+      }
+    }
+}
+
+/// A cut face of another part that the node stands before or in, if there is one; else the nearest face. Edges of one shape meet rim on rim, where
+/// the nearest face of a node that has gone in may be the outer one, and no help.
+bool WallMeetings::meet(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x, int node, WallMeeting& m) noexcept {
+  const Vec3 q = x.col(node);
+  const int part = mesh.node_part[static_cast<std::size_t>(node)];
+  found_.clear();
+  tree.overlaps({q - Vec3::Constant(reach_), q + Vec3::Constant(reach_)}, found_);
+  double least = reach_, facing = 0.0, least_aside = kAside * reach_;
+  bool met = false, cut = false;
+  for (const int k : found_) {
+    const Triangle& t = tree.triangles()[static_cast<std::size_t>(k)];
+    if (mesh.node_part[static_cast<std::size_t>(t[0])] == part) continue;
+    const Vec3 a = x.col(t[0]), b = x.col(t[1]), c = x.col(t[2]), n = (b - a).cross(c - a).normalized();
+    const TrianglePoint p = closest_on_triangle(q, a, b, c);
+    const Vec3 way = q - p.point;
+    const double distance = way.norm(), face = std::abs(way.dot(n));
+    if (mesh.faces[static_cast<std::size_t>(k / 2)].surface == WallSurface::edge && face < reach_) {
+      const double aside = (way - way.dot(n) * n).norm();
+      if (aside > least_aside || (cut && aside == least_aside)) continue;
+      least_aside = aside;
+      met = cut = true;
+      m = {node, t, p.weights, n};
+    } else if (!cut) {
+      if (distance > least + 1e-12 || (met && distance > least - 1e-12 && face <= facing)) continue;  // of ties the face that q faces most tells
+      least = std::min(least, distance);
+      facing = face;
+      met = true;
+      m = {node, t, p.weights, n};
+    }
+  }
+  return met;
+}
+
+double WallMeetings::overlap(int k, const Points& x) const noexcept {
+  const WallMeeting& m = (*this)[k];
+  return m.normal.dot(m.weight[0] * x.col(m.face[0]) + m.weight[1] * x.col(m.face[1]) + m.weight[2] * x.col(m.face[2]) - x.col(m.node));
+}
+
+double WallMeetings::add_forces(const Points& x, Points& force) const noexcept {
+  double energy = 0.0;
+  for (int k = 0; k < n_; ++k) {
+    const double o = overlap(k, x);
+    if (o <= 0.0) continue;
+    const WallMeeting& m = (*this)[k];
+    energy += 0.5 * stiffness_ * o * o;
+    const Vec3 f = stiffness_ * o * m.normal;
+    force.col(m.node) += f;
+    for (int c = 0; c < 3; ++c) force.col(m.face[static_cast<std::size_t>(c)]) -= m.weight[c] * f;
+  }
+  return energy;
+}
+
+}  // namespace filum

@@ -1,0 +1,51 @@
+#pragma once
+// Contact of wall with wall: nodes near a cut edge against the surface of another part, pushed out of it by
+//   U = k/2 sum o^2,  o = -n . (x_i - sum_k w_k x_k) > 0,
+// x_k the corners of a face that node i stands before at the start of the step (a cut face if there is one, else the nearest) and n its normal there (node
+// to face, both ways; Wriggers, Computational Contact Mechanics, 2006, sec. 6). Pairs are found once a step among nodes within `reach` of a face, touching or not, so that what
+// touches during the step is met in it. The potential is part of the wall's own step: both sides move in one equilibrium.
+// Neglects: friction, faces of the same part (a lumen pressed flat passes into itself), nodes further than two rows from the cut. Test: wall_meeting_test.
+
+#include <array>
+#include <vector>
+
+#include "collision/surface_tree.h"
+#include "physics/vessel_mesh.h"
+
+namespace filum {
+
+struct WallMeeting {
+  int node = 0;
+  Triangle face;
+  Vec3 weight = Vec3::Zero();  // of the face's corners
+  Vec3 normal = Vec3::Zero();  // unit, out of the face
+};
+
+class WallMeetings {
+ public:
+  WallMeetings() = default;
+  WallMeetings(const VesselMesh& mesh, double reach, double stiffness);
+
+  /// Pairs at x, to whose shape the tree's boxes have been fitted. Allocates nothing.
+  void find(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x) noexcept;
+  void clear() noexcept { n_ = 0; }
+  /// Energy [J]; forces [N] are added to `force`.
+  double add_forces(const Points& x, Points& force) const noexcept;
+
+  int size() const noexcept { return n_; }
+  const WallMeeting& operator[](int k) const noexcept { return list_[static_cast<std::size_t>(k)]; }
+  double overlap(int k, const Points& x) const noexcept;  // [m], negative: apart
+  double stiffness() const noexcept { return stiffness_; }
+  double reach() const noexcept { return reach_; }
+
+ private:
+  bool meet(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x, int node, WallMeeting& m) noexcept;
+
+  double reach_ = 0.0, stiffness_ = 0.0;   // [m], [N/m]
+  std::vector<std::vector<int>> rim_;      // of each part: nodes near its cut edge
+  std::vector<WallMeeting> list_;
+  std::vector<int> found_;
+  int n_ = 0;
+};
+
+}  // namespace filum

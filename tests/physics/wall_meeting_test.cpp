@@ -1,0 +1,102 @@
+#include "physics/wall_meeting.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "physics/vessel_clamp.h"
+#include "physics/vessel_wall.h"
+
+using namespace filum;
+
+namespace {
+
+std::vector<WallLayer> soft_wall() {
+  WallLaw law;
+  law.kind = WallLaw::Kind::neo_hookean;
+  law.mu = 40e3;
+  law.lambda = 2e6;
+  return {{"wall", 1e-4, law}};
+}
+
+TubeShape stump_shape() {
+  TubeShape s;
+  s.around = 16;
+  s.along = 8;
+  s.length = 1.2e-3;
+  return s;
+}
+
+/// Two stumps whose cut edges are `gap` apart.
+VesselMesh stumps(double gap) {
+  DoubleClamp c;
+  c.gap = gap;
+  return make_stumps(stump_shape(), c);
+}
+
+TEST(WallMeeting, FindsTheOppositeEdgeWithinReachOnly) {
+  const VesselMesh near = stumps(20e-6), far = stumps(80e-6);
+  WallMeetings m(near, 50e-6, 30.0);
+  m.find(near, SurfaceTree(face_triangles(near), near.nodes), near.nodes);
+  EXPECT_EQ(m.size(), 2 * 2 * 16) << "the nodes of both edges";
+  for (int k = 0; k < m.size(); ++k) {
+    EXPECT_NEAR(m.overlap(k, near.nodes), -20e-6, 1e-12);
+    EXPECT_NEAR(std::abs(m[k].normal.z()), 1.0, 1e-12);
+  }
+  m.find(far, SurfaceTree(face_triangles(far), far.nodes), far.nodes);
+  EXPECT_EQ(m.size(), 0);
+}
+
+/// Forces are minus the gradient of the energy, and balance.
+TEST(WallMeeting, ForceIsTheGradientAndActsOnBothSides) {
+  const VesselMesh mesh = stumps(-8e-6);
+  WallMeetings m(mesh, 50e-6, 30.0);
+  m.find(mesh, SurfaceTree(face_triangles(mesh), mesh.nodes), mesh.nodes);
+  ASSERT_GT(m.size(), 0);
+  Points f = Points::Zero(3, mesh.n_nodes()), scratch = f;
+  EXPECT_NEAR(m.add_forces(mesh.nodes, f), m.size() * 0.5 * 30.0 * 8e-6 * 8e-6, 1e-15);
+  EXPECT_LT(f.rowwise().sum().norm(), 1e-15);
+  for (const int i : {m[0].node, m[0].face[0], m[5].face[2]})
+    for (int c = 0; c < 3; ++c) {
+      const double h = 1e-9;
+      Points x = mesh.nodes;
+      x(c, i) += h;
+      const double up = m.add_forces(x, scratch);
+      x(c, i) -= 2.0 * h;
+      EXPECT_NEAR(-(up - m.add_forces(x, scratch)) / (2.0 * h), f(c, i), 1e-9);
+    }
+}
+
+/// The clamp slid until the stumps would overlap by 40 micrometres: edges press on each other and stay outside one another. The same
+/// without contact: they pass.
+TEST(WallMeeting, EdgesPressedTogetherStayApart) {
+  for (const bool met : {true, false}) {
+    DoubleClamp first, now;
+    first.gap = now.gap = 60e-6;
+    const TubeShape shape = stump_shape();
+    WallOptions options;
+    options.max_iterations = 40;
+    VesselWall wall(make_stumps(shape, first), soft_wall(), options);
+    WallState state = wall.first_state();
+    for (int k = 0; k < 200; ++k) {
+      now = approach(now, -40e-6, 0.0, 2e-3, 0.5e-3, 1.0);
+      const auto motion = clamp_motion(first, now, shape.length);
+      for (int part = 0; part < 2; ++part) wall.place_clamp(part, motion[static_cast<std::size_t>(part)]);
+      wall.refit(state);
+      if (met) wall.meet(state);
+      ASSERT_TRUE(wall.step(state).sound) << k;
+    }
+    double past = -1.0;  // by which the first edge reaches beyond the second, at the same angle
+    const auto &a = wall.mesh().edge_ring[0], &b = wall.mesh().edge_ring[1];
+    for (const int i : a)
+      for (const int j : b)
+        if ((state.x.col(i) - state.x.col(j)).head<2>().norm() < 60e-6) past = std::max(past, state.x(2, i) - state.x(2, j));
+    if (met)
+      EXPECT_LT(past, 15e-6);
+    else
+      EXPECT_GT(past, 30e-6);
+  }
+}
+
+}  // namespace
