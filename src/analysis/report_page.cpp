@@ -85,6 +85,7 @@ std::string tremor_html(const Json& t) {
 }
 
 std::string spread_text(const Json& s, double scale = 1.0) {
+  if (s["n"] == 0) return "none";
   return number(s["median"], scale) + " (" + number(s["q1"], scale) + " to " + number(s["q3"], scale) + ", n " + number(s["n"]) + ")";
 }
 

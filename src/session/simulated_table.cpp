@@ -29,7 +29,7 @@ void add_simulated_row(TableBuilder& table, const Observation& seen) {
     table.add(prefix + "grip_angle", "rad", "simulated opening of the jaws", tool.grip_angle);
     table.add(prefix + "grip_force", "N", "squeeze at the pads", tool.grip_force);
     table.add(prefix + "thread_force", "N", "pull of the thread on the jaws", tool.thread_force);
-    table.add_integer(prefix + "grasped_edge", "-", "edge of the thread in the jaws, -1 none",
+    table.add_integer(prefix + "grasped_edge", "-", "edge of the thread in the jaws, -1 none; of a spatula, which of its shapes",
                       tool.grasped_edge);
   }
   table.add("thread_tension_max", "N", "largest tension along the thread", largest_tension(seen));
