@@ -174,6 +174,9 @@ bool needs_finish(Measure measure) {
     case Measure::both_moving:
     case Measure::force_share:
     case Measure::objects_broken:
+    case Measure::target_error:
+    case Measure::target_longest:
+    case Measure::on_target:
       return true;
     default:
       return measure >= Measure::pressure_peak;  // all of brain retraction

@@ -182,5 +182,17 @@ TEST(LabWatch, TheTasksOfTheLaboratoryAreReadAndScored) {
   }
 }
 
+TEST(LabWatch, AHoldGivenUpEarlyGetsNoPoints) {
+  const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/research/tip-hold/task.yaml");
+  SceneDescription s = scene();
+  s.dt = kDt;
+  TaskSession session(task, s);
+  for (int k = 0; k < 2500; ++k) session.observe(seen(kDt * k, Vec3(0, 0, 5e-3)));
+  const Result r = session.finish();
+  EXPECT_FALSE(r.finished);
+  EXPECT_EQ(r.total, 0.0);
+  EXPECT_NE(r.items.front().why.find("not all steps were done"), std::string::npos) << r.items.front().why;
+}
+
 }  // namespace
 }  // namespace filum
