@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/markup.h"
+
 namespace filum {
 namespace {
 

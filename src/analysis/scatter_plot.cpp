@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "base/markup.h"
+
 namespace filum {
 namespace {
 
@@ -160,18 +162,6 @@ class Panel {
 };
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '&') out += "&amp;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
-  }
-  return out;
-}
 
 std::string scatter_svg(const std::vector<ScatterPanel>& panels, const std::vector<std::string>& group_names) {
   const bool named = group_names.size() <= kMostNames;

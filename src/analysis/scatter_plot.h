@@ -20,7 +20,5 @@ struct ScatterPanel {
 /// Names of more than 14 groups are left out: their colours would repeat.
 std::string scatter_svg(const std::vector<ScatterPanel>& panels, const std::vector<std::string>& group_names);
 
-/// Text for HTML and SVG.
-std::string escaped(const std::string& text);
 
 }  // namespace filum

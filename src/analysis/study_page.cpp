@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/markup.h"
+
 namespace filum {
 namespace {
 

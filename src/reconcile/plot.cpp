@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/markup.h"
+
 namespace filum::reconcile {
 namespace {
 
@@ -52,18 +54,6 @@ std::string curve(const Curve& c, const Frame& f) {
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '&') out += "&amp;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
-  }
-  return out;
-}
 
 std::string plot(const PlotText& text, const std::vector<Curve>& curves, int width, int height) {
   Frame f;

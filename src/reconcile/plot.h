@@ -21,6 +21,5 @@ struct PlotText {
 std::string plot(const PlotText& text, const std::vector<Curve>& curves, int width = 380, int height = 230);
 /// Rows of cells coloured by value, 0 white, `most` dark red.
 std::string heat_map(const std::vector<std::string>& rows, const std::vector<std::vector<double>>& cells, double most);
-std::string escaped(const std::string& text);
 
 }  // namespace filum::reconcile

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "reconcile/hardware.h"
+#include "base/markup.h"
 #include "reconcile/plot.h"
 #include "reconcile/report.h"
 

@@ -1,4 +1,4 @@
-foreach(name block_cholesky ensure error exchange hash pose rng stage_clock tet_mesh units utc_stamp yaml_file)
+foreach(name block_cholesky ensure error exchange hash markup pose rng stage_clock tet_mesh units utc_stamp yaml_file)
   filum_test(base/${name} filum_base)
 endforeach()
 filum_fuzz(base/units filum_base)
