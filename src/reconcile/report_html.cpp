@@ -4,8 +4,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "reconcile/hardware.h"
 #include "base/markup.h"
+#include "reconcile/hardware.h"
 #include "reconcile/plot.h"
 #include "reconcile/report.h"
 
