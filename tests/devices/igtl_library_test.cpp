@@ -44,12 +44,13 @@ TEST(IgtlLibrary, WhatTheLibrarySendsIsRead) {
   std::jthread sender([&](const std::stop_token& stop) {
     auto socket = server->WaitForConnection(5000);
     if (socket.IsNull()) return;
-    while (!stop.stop_requested()) {
+    for (unsigned second = 1; !stop.stop_requested(); ++second) {
       auto transform = igtl::TransformMessage::New();
       transform->SetDeviceName("Tool0ToReference");
       igtl::Matrix4x4 m;
       set_matrix(m, known());
       transform->SetMatrix(m);
+      transform->SetTimeStamp(second, 0);  // never left out: the library does not initialise it, and a constant one is a repetition
       transform->Pack();
       socket->Send(transform->GetPackPointer(), transform->GetPackSize());
       auto element = igtl::TrackingDataElement::New();
@@ -58,6 +59,7 @@ TEST(IgtlLibrary, WhatTheLibrarySendsIsRead) {
       auto data = igtl::TrackingDataMessage::New();
       data->SetDeviceName("Tracker");
       data->AddTrackingDataElement(element);
+      data->SetTimeStamp(second, 0);
       data->Pack();
       socket->Send(data->GetPackPointer(), data->GetPackSize());
       std::this_thread::sleep_for(5ms);
@@ -71,6 +73,7 @@ TEST(IgtlLibrary, WhatTheLibrarySendsIsRead) {
   }
   ASSERT_GE(samples.size(), 20u);
   EXPECT_EQ(tracker.health().corrupt, 0u);
+  EXPECT_EQ(tracker.repeated(), 0u);
   int first = 0;
   for (const DeviceSample& s : samples) {
     first += s.tool == 0 ? 1 : 0;
