@@ -2,7 +2,8 @@ import * as THREE from "three";
 import { describe, expect, it } from "vitest";
 import type { Frame, Scene } from "@viewer/messages";
 import { Brain, kPressureStops, pressureColour, pressureView } from "@viewer/scene/brain";
-import { cortexUv, vesselTree } from "@viewer/scene/cortex_surface";
+import { BladeMask, courseOf } from "@viewer/scene/blade_skin";
+import { Bed, cortexUv, vesselTree } from "@viewer/scene/cortex_surface";
 import { random } from "@viewer/scene/textures";
 import { BrainPanel, share } from "@viewer/ui/brain_panel";
 import { mapColour, pressureAt, pressureMapPanel } from "@viewer/ui/pressure_map";
@@ -68,6 +69,14 @@ describe("brain", () => {
     expect(tree(3).length).toBeGreaterThan(5);
     for (const { widths } of tree(3)) for (let k = 1; k < widths.length; ++k) expect(widths[k]).toBeLessThan(widths[k - 1]);
   });
+  it("lets no two vessels of a bed cross", () => {
+    const bed = new Bed(), names = { last: 0 }, next = random(11);
+    const grown = [0, 1, 2, 3].flatMap((k) => vesselTree(next, 20 + 10 * k, 20, 1.2 + 0.4 * k, 0.6, 0.1, bed, names));
+    for (const [i, a] of grown.entries())
+      for (let k = 26; k + 1 < a.points.length; k += 2)
+        for (const b of grown.slice(i + 1))
+          for (let m = 26; m + 1 < b.points.length; m += 2) expect(Math.hypot(a.points[k] - b.points[m], a.points[k + 1] - b.points[m + 1])).toBeGreaterThan(0.05);
+  });
   it("shortens a vein that has torn", () => {
     const length = (torn: number) => {
       const brain = new Brain(shape, true);
@@ -75,6 +84,25 @@ describe("brain", () => {
       return Math.max(...brain.group.children.filter((c) => c instanceof THREE.Mesh).map((c) => (c.geometry instanceof THREE.CylinderGeometry ? c.scale.y : 0)));
     };
     expect(length(1)).toBeLessThan(0.5 * length(0));
+  });
+});
+
+describe("tissue under a blade", () => {
+  // 4 mm rows of a blade that widens over 8 mm and bends beyond 20 mm
+  const rows = Array.from({ length: 11 }, (_, i) => ({ half: Math.min(0.005, 0.003 + 0.00025 * 4 * i), y: i > 5 ? 0.002 * (i - 5) : 0, z: 0.004 * i }));
+  const form = { name: "bent", vertices: rows.flatMap(({ half, y, z }) => [-half, y, z, 0, y, z, half, y, z]), triangles: [], width: 0.01, grip: 0.1 };
+  it("knows the blade's course by where it bends or widens, as far as it is drawn", () => {
+    expect(courseOf(form, 0.03).map((row) => row.toArray().map((x) => Math.round(x * 1e3) / 1e3))).toEqual([[0, 0, 3], [0, 8, 5], [0, 20, 5], [4, 28, 5]]);
+  });
+  it("hands the course and the place of each blade to the tissue's shader", () => {
+    const mask = new BladeMask([{ name: "one", forms: [form] }], 0.03), blade = new THREE.Object3D(), shader = { uniforms: {} as Record<string, { value: unknown }>, vertexShader: "#include <begin_vertex>", fragmentShader: "#include <clipping_planes_fragment>" };
+    blade.position.set(1, 2, 3);
+    mask.place(0, 0, blade);
+    mask.place(1, 0, blade); // there is no second blade
+    mask.install(shader as unknown as THREE.WebGLProgramParametersWithUniforms);
+    expect(shader.uniforms.bladeCount.value).toEqual([4, 0]);
+    expect(new THREE.Vector3(1, 2, 3).applyMatrix4((shader.uniforms.bladeFrom.value as THREE.Matrix4[])[0]).length()).toBeLessThan(1e-12);
+    expect(shader.fragmentShader).toContain("if (underBlade()) discard;");
   });
 });
 

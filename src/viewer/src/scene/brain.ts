@@ -2,7 +2,9 @@
 // bridging veins, the target. It draws what frames say; colours say it a second time beside the panel's words.
 import * as THREE from "three";
 import type { BrainShape, BrainState, Frame } from "../messages";
+import { BladeMask, bladeMaterial, polish } from "./blade_skin";
 import { cortexMaterial, cortexUv } from "./cortex_surface";
+import { bladeBall, steelBall } from "./materials";
 
 const kMm = 1000;
 export type PressureMode = "scale" | "threshold" | "off";
@@ -43,15 +45,11 @@ function mesh(vertices: number[], triangles: number[], material: THREE.Material)
   return made;
 }
 
-/// A form of a blade: polished, so brighter along its middle, with a ground edge.
+/// A form of a blade. Tissue that lies on it would shade it in the pattern of its own triangles: no shadow falls on it.
 function bladeMesh(form: BrainShape["blades"][number]["forms"][number], steel: THREE.Material): THREE.Mesh {
-  const made = mesh(form.vertices, nearTip(form.vertices, form.triangles), steel), shine = new Float32Array(form.vertices.length);
-  for (let i = 0; i < shine.length; i += 3) {
-    const out = (2 * Math.abs(form.vertices[i])) / form.width, along = form.vertices[i + 2] / kShown;
-    shine.fill(Math.max(0.35, 1 - 0.3 * out * out - 0.25 * along), i, i + 3);
-  }
-  made.geometry.setAttribute("color", new THREE.BufferAttribute(shine, 3));
-  made.add(new THREE.LineSegments(new THREE.EdgesGeometry(made.geometry, 60), new THREE.LineBasicMaterial({ color: 0xf2f6f8 })));
+  const made = mesh(form.vertices, nearTip(form.vertices, form.triangles), steel);
+  polish(made.geometry, kShown * kMm);
+  made.receiveShadow = false;
   return made;
 }
 
@@ -71,16 +69,17 @@ export class Brain {
   private readonly cortex: THREE.Mesh<THREE.BufferGeometry>;
   private readonly blades: THREE.Group[] = []; // each with a mesh for each of its forms
   private readonly arms: RetractorArm[];
-  private readonly veins: { mesh: THREE.Mesh; vertex: number; dura: THREE.Vector3 }[];
+  private readonly mask: BladeMask;
+  private readonly veins: { mesh: THREE.Mesh; foot: THREE.Mesh; vertex: number; dura: THREE.Vector3 }[];
 
   constructor(shape: BrainShape, painted: boolean) {
-    this.cortex = mesh(shape.rest, shape.triangles, cortexMaterial(painted));
+    this.mask = new BladeMask(shape.blades, kShown);
+    this.cortex = mesh(shape.rest, shape.triangles, cortexMaterial(painted, this.mask));
     this.cortex.geometry.setAttribute("uv", new THREE.BufferAttribute(cortexUv(shape.rest, this.cortex.geometry.getAttribute("normal").array, kMm), 2));
     this.cortex.geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array((4 * shape.rest.length) / 3), 4));
     this.group.add(this.cortex, rim(shape));
-    const steel = painted ? new THREE.MeshPhongMaterial({ color: 0xb4bdc4, specular: 0x8a949c, shininess: 40, side: THREE.DoubleSide }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, side: THREE.DoubleSide });
-    const polished = steel.clone();
-    polished.vertexColors = true;
+    const ball = painted ? steelBall() : null, polished = bladeMaterial(painted ? bladeBall() : null);
+    const steel = ball ? new THREE.MeshMatcapMaterial({ matcap: ball, toneMapped: false }) : new THREE.MeshStandardMaterial({ color: 0xcfd6db, metalness: 1, roughness: 0.3, envMapIntensity: 1.9 });
     for (const blade of shape.blades) {
       const held = new THREE.Group();
       for (const form of blade.forms) held.add(bladeMesh(form, polished));
@@ -91,11 +90,11 @@ export class Brain {
     for (const arm of this.arms) this.group.add(arm.group);
     if (shape.bone !== null) this.group.add(boneWall(shape));
     if (shape.falx) this.group.add(falxSheet(shape, shape.falx));
-    const blue = new THREE.MeshStandardMaterial({ color: 0x3a2a66, roughness: 0.35 });
+    const blue = painted ? new THREE.MeshPhongMaterial({ color: 0x6a3358, specular: 0x665560, shininess: 60 }) : new THREE.MeshPhysicalMaterial({ color: 0x5e2c50, roughness: 0.4, clearcoat: 0.8, clearcoatRoughness: 0.2 });
     this.veins = shape.veins.map(({ vertex, dura }) => {
-      const vein = new THREE.Mesh(new THREE.CylinderGeometry(0.7, 0.7, 1, 12), blue);
-      this.group.add(vein);
-      return { mesh: vein, vertex, dura: new THREE.Vector3(...dura).multiplyScalar(kMm) };
+      const vein = new THREE.Mesh(new THREE.CylinderGeometry(0.6, 0.7, 1, 12), blue), foot = new THREE.Mesh(new THREE.SphereGeometry(0.7, 16, 12), blue);
+      this.group.add(vein, foot);
+      return { mesh: vein, foot, vertex, dura: new THREE.Vector3(...dura).multiplyScalar(kMm) };
     });
     if (shape.target) {
       const disc = new THREE.Mesh(new THREE.CircleGeometry(shape.target.radius * kMm, 32), new THREE.MeshBasicMaterial({ color: 0x56b4e9, toneMapped: false }));
@@ -118,6 +117,7 @@ export class Brain {
       blade.position.set(pose.position[0], pose.position[1], pose.position[2]).multiplyScalar(kMm);
       blade.quaternion.set(pose.quaternion[1], pose.quaternion[2], pose.quaternion[3], pose.quaternion[0]);
       blade.children.forEach((form, at) => { form.visible = at === (state.blades[k]?.form ?? 0); });
+      this.mask.place(k, state.blades[k]?.form ?? 0, blade);
       this.arms[k].update(blade, state.blades[k]?.parked ?? false);
     });
     this.veins.forEach((vein, k) => this.stretch(vein, array, state.veins_torn[k] === 1));
@@ -133,9 +133,10 @@ export class Brain {
     colour.needsUpdate = true;
   }
 
-  private stretch(vein: { mesh: THREE.Mesh; vertex: number; dura: THREE.Vector3 }, at: Float32Array, torn: boolean): void {
+  private stretch(vein: { mesh: THREE.Mesh; foot: THREE.Mesh; vertex: number; dura: THREE.Vector3 }, at: Float32Array, torn: boolean): void {
     const foot = new THREE.Vector3(at[3 * vein.vertex], at[3 * vein.vertex + 1], at[3 * vein.vertex + 2]);
     const end = torn ? foot.clone().lerp(vein.dura, 0.35) : vein.dura;
+    vein.foot.position.copy(foot);
     span(vein.mesh, foot, end);
   }
 }
@@ -155,6 +156,7 @@ class RetractorArm {
     const clamp = new THREE.Mesh(new THREE.BoxGeometry(7, 5, 8), steel);
     clamp.position.copy(this.foot);
     this.group.add(...this.bars, ...this.joints, clamp);
+    this.group.visible = false;
   }
 
   update(blade: THREE.Group, parked: boolean): void {

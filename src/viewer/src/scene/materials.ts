@@ -44,21 +44,33 @@ export function physicalMaterials(): Materials {
 function ball(stops: [number, string][]): THREE.Texture {
   const size = 128, canvas = document.createElement("canvas");
   canvas.width = canvas.height = size;
-  const g = canvas.getContext("2d")!;
-  const shade = g.createRadialGradient(0.36 * size, 0.3 * size, 0, 0.46 * size, 0.44 * size, 0.6 * size);
-  for (const [at, colour] of stops) shade.addColorStop(at, colour);
-  g.fillStyle = shade;
-  g.fillRect(0, 0, size, size);
+  const g = canvas.getContext("2d");
+  if (g) {
+    const shade = g.createRadialGradient(0.36 * size, 0.3 * size, 0, 0.46 * size, 0.44 * size, 0.6 * size);
+    for (const [at, colour] of stops) shade.addColorStop(at, colour);
+    g.fillStyle = shade;
+    g.fillRect(0, 0, size, size);
+  }
   const texture = new THREE.CanvasTexture(canvas);
   texture.colorSpace = THREE.SRGBColorSpace;
   return texture;
+}
+
+/// Polished steel between a lamp and a dark room.
+export function steelBall(): THREE.Texture {
+  return ball([[0, "#ffffff"], [0.14, "#eef1f4"], [0.34, "#a9b0b8"], [0.55, "#6b727a"], [0.78, "#9aa1a9"], [1, "#30363c"]]);
+}
+
+/// The same, broad and seen from above along the light: bright to its rim.
+export function bladeBall(): THREE.Texture {
+  return ball([[0, "#ffffff"], [0.25, "#f3f5f6"], [0.5, "#c3cad0"], [0.8, "#9ba4ab"], [1, "#737c84"]]);
 }
 
 export function paintedMaterials(): Materials {
   const painted = (...stops: [number, string][]) => new THREE.MeshMatcapMaterial({ matcap: ball(stops), toneMapped: false });
   const lit = (colour: string, edge: string) => painted([0, "#ffffff"], [0.16, colour], [0.75, edge], [1, edge]);
   return {
-    bright: painted([0, "#ffffff"], [0.14, "#eef1f4"], [0.34, "#a9b0b8"], [0.55, "#6b727a"], [0.78, "#9aa1a9"], [1, "#30363c"]),
+    bright: new THREE.MeshMatcapMaterial({ matcap: steelBall(), toneMapped: false }),
     dark: painted([0, "#fffdf6"], [0.12, "#dedad0"], [0.3, "#8f8b84"], [0.55, "#55524d"], [0.8, "#86827b"], [1, "#24221f"]),
     clamp: lit("#9aa2a9", "#3c4349"),
     black: lit("#3a4144", "#0c0f10"),

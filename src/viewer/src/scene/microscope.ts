@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import type { Frame, Scene } from "../messages";
 import { FinishPass } from "./finish_pass";
-import { blurDiameter, eyeAt, fieldDiameter, kMagnificationStart, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
+import { blurDiameter, eyeAt, fieldDiameter, kMagnificationBrain, kMagnificationStart, kTilt, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
 import { isSoftwareRenderer, QualityChooser } from "./quality";
 import { Stage } from "./stage";
 
@@ -15,7 +15,8 @@ export class Microscope {
   readonly stage: Stage;
   readonly quality: QualityChooser;
   readonly rendererName: string;
-  readonly optics: OpticsState = { magnification: kMagnificationStart, focus: 0, centre: [0, 0], tilt: 0.21, eyeDistance: 22 };
+  private start = kMagnificationStart;
+  readonly optics: OpticsState = { magnification: kMagnificationStart, focus: 0, centre: [0, 0], tilt: kTilt, eyeDistance: 22 };
   stereo: StereoMode = "mono";
   lastFrameTime = 0; // [ms], from one drawn frame to the next
   private readonly renderer: THREE.WebGLRenderer;
@@ -44,7 +45,13 @@ export class Microscope {
     this.stage.describe(scene);
     this.optics.focus = this.stage.focusHeight;
     this.optics.centre = [...this.stage.centre];
+    this.optics.tilt = scene.brain && scene.brain.bone === null ? 0 : kTilt; // below a lobe one looks along the bone
+    const start = scene.brain ? kMagnificationBrain : kMagnificationStart;
+    if (start !== this.start) this.optics.magnification = this.start = start;
   }
+
+  /// Magnification that a scene of this kind begins with.
+  get startMagnification(): number { return this.start; }
 
   update(frame: Frame): void {
     this.stage.paint(this.quality.current.painted);

@@ -12,6 +12,8 @@ export interface OpticsState {
 export const kMagnificationMin = 5;
 export const kMagnificationMax = 40;
 export const kMagnificationStart = 8; // both hands at rest are in the field
+export const kMagnificationBrain = 5; // blades, lips and the way between them
+export const kTilt = 0.21; // [rad], at which instruments are seen from the operator's side; a fissure is seen as its target is, from above
 export const kWorkingDistance = 200; // [mm], objective to focal plane
 export const kFieldNumber = 200; // [mm], field diameter times magnification
 export const kAperture = 14; // [mm], of one beam path at the objective; sets the depth of field

@@ -89,7 +89,8 @@ export class Stage {
     this.coaxial.intensity = message.brain ? 1.1 : 0.4;
     this.ambient.intensity = message.brain ? (this.painted ? 0.7 : 0.35) : 0;
     this.threadRadius = message.thread_radius * kMm;
-    this.addSheet();
+    if (message.brain) this.addDepth();
+    else this.addSheet();
     for (const bar of [message.post, message.base]) if (bar) this.addBar(bar);
     if (message.post) this.addStands(message.post);
     this.addNotch(message.notch ?? []);
@@ -134,8 +135,8 @@ export class Stage {
     const span = Math.max(kShadowReach, 0.62 * field);
     const shadow = this.key.shadow;
     this.key.castShadow = shadows;
-    this.flatShadows.group.visible = !shadows;
-    if (!shadows) this.flatShadows.update(kLight, this.floorHeight);
+    this.flatShadows.group.visible = !shadows && this.brain === null;
+    if (this.flatShadows.group.visible) this.flatShadows.update(kLight, this.floorHeight);
     if (shadow.mapSize.x !== mapSize) {
       shadow.mapSize.set(mapSize, mapSize);
       shadow.map?.dispose();
@@ -169,6 +170,13 @@ export class Stage {
     sheet.position.z = this.floorHeight;
     sheet.receiveShadow = true;
     this.content.add(sheet);
+  }
+
+  /// What is seen past the tissue of a brain: nothing that is lit.
+  private addDepth(): void {
+    const depth = new THREE.Mesh(new THREE.PlaneGeometry(2 * kSheet, 2 * kSheet), new THREE.MeshBasicMaterial({ color: 0x1c0b0a }));
+    depth.position.z = this.floorHeight;
+    this.content.add(depth);
   }
 
   private addBar(bar: NonNullable<Scene["post"]>): void {

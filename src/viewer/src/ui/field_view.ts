@@ -1,6 +1,6 @@
 // The round field of the microscope on the page: canvas, reticle, drawing loop, and the controls of the optics.
 import type { Frame, Scene } from "../messages";
-import { clampMagnification, fieldDiameter, kMagnificationStart, scaleBar, zoomed } from "../scene/optics";
+import { clampMagnification, fieldDiameter, scaleBar, zoomed } from "../scene/optics";
 import { Microscope, type StereoMode } from "../scene/microscope";
 import { h, setText, svg } from "./dom";
 
@@ -93,7 +93,7 @@ export class FieldView {
   get reticleShown(): boolean { return this.reticleOn; }
   reset(): void {
     const { optics } = this.microscope;
-    Object.assign(optics, { magnification: kMagnificationStart, focus: this.microscope.stage.focusHeight, centre: [...this.microscope.stage.centre], eyeDistance: 22 });
+    Object.assign(optics, { magnification: this.microscope.startMagnification, focus: this.microscope.stage.focusHeight, centre: [...this.microscope.stage.centre], eyeDistance: 22 });
     this.changed();
   }
   /// Quality was chosen by hand.
