@@ -3,6 +3,8 @@
 #include "evidence/bench.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,7 +13,9 @@
 #include "cli/inputs.h"
 #include "cli/options.h"
 #include "cli/setup.h"
+#include "evidence/wild_hands.h"
 #include "haptics/haptic_loop.h"
+#include "world/model.h"
 
 namespace filum {
 namespace {
@@ -22,7 +26,12 @@ constexpr const char* kTaskBench = "task-";
 struct BenchOptions {
   CommonOptions common;
   std::vector<std::string> names;
+  int wild = 0;              // seeds of violent hands instead of benches
+  double wild_seconds = 0.6;  // [s], scene time of each
 };
+
+/// One task of every kind of scene.
+const std::vector<std::string> kWildTasks = {"knot-square", "needle-loading", "card-stitches", "vessel-stitch", "grasp-transfer", "press-to-target"};
 
 /// The task as its demonstration drives it.
 DrivenTask open_task(const std::string& root, const std::string& task) {
@@ -89,7 +98,43 @@ void print_line(const BenchResult& r) {
   std::fflush(stdout);
 }
 
+/// Whether scenes survive hands that do anything, and how late their steps were.
+nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o) {
+  using Json = nlohmann::ordered_json;
+  const Setup setup = load_setup(o.common.root, task);
+  WildRun worst;
+  std::uint64_t steps = 0;
+  Json faults = Json::array();
+  for (int seed = 1; seed <= o.wild; ++seed) {
+    const WildRun run = run_wild(setup.model, static_cast<std::uint64_t>(seed), static_cast<int>(std::lround(o.wild_seconds / setup.model->description.dt)));
+    if (!run.fault.empty()) faults.push_back({{"seed", seed}, {"step", run.steps}, {"fault", run.fault}});
+    steps += run.steps;
+    worst.fastest = std::max(worst.fastest, run.fastest);
+    worst.deepest = std::max(worst.deepest, run.deepest);
+    worst.slowest_ms = std::max(worst.slowest_ms, run.slowest_ms);
+    worst.late += run.late;
+    worst.trouble += run.trouble;
+    worst.apart = std::max(worst.apart, run.apart);
+  }
+  return {{"task", task}, {"seeds", o.wild}, {"steps", steps}, {"scene_s", static_cast<double>(steps) * setup.model->description.dt}, {"faults", faults}, {"fastest_m_per_s", worst.fastest},
+          {"deepest_share", worst.deepest}, {"longest_step_ms", worst.slowest_ms}, {"late_steps", worst.late}, {"solver_trouble_events", worst.trouble}, {"apart_steps", worst.apart}};
+}
+
+int run_wild_hands(const BenchOptions& o) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  bool sound = true;
+  for (const std::string& task : o.names.empty() ? kWildTasks : o.names) {
+    list.push_back(wild_json(task, o));
+    sound = sound && list.back()["faults"].empty();
+    if (!o.common.json) std::printf("%s\n", list.back().dump().c_str());
+    std::fflush(stdout);
+  }
+  if (o.common.json) print_json({{"machine", machine_text()}, {"wild", list}});
+  return sound ? kDone : kFailed;
+}
+
 int run(const BenchOptions& o) {
+  if (o.wild > 0) return run_wild_hands(o);
   const auto names = o.names.empty() ? possible_benches(o.common.root) : o.names;
   if (!o.common.json) {
     std::printf("%s\n%-18s %5s %8s %6s %6s %8s %8s %8s %9s %12s %8s\n", machine_text().c_str(), "bench",
@@ -113,6 +158,8 @@ void add_bench(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("bench", "Time the simulation's steps on this machine");
   command->add_option("name", o->names,
                       "Benches to run, by name or beginning of the name up to a hyphen (default: all)");
+  command->add_option("--wild", o->wild, "Instead: so many seeds of violent random hands on the tasks named (default: one of every kind)")->check(CLI::Range(1, 1000000));
+  command->add_option("--wild-seconds", o->wild_seconds, "Scene time of each seed")->check(CLI::Range(0.01, 3600.0));
   add_common(*command, o->common);
   command->callback([o, &action] { action.run = [o] { return run(*o); }; });
 }

@@ -93,6 +93,11 @@ void ReplaySession::seek(double time) {
   changed_ = true;
 }
 
+void ReplaySession::show_again() {
+  const std::lock_guard lock(mutex_);
+  shown_ = static_cast<std::size_t>(-1);
+}
+
 void ReplaySession::show_loop() {
   auto last = std::chrono::steady_clock::now();
   double since_told = 0.0;  // [s]

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -24,6 +25,7 @@ class ReplaySession {
   ~ReplaySession();
 
   const SceneDescription& scene() const { return world_.description(); }
+  std::shared_ptr<const Model> model() const { return recorded_.setup().model; }
   /// Score as stored in the recording, JSON text; empty if there is none.
   const std::string& stored_score() const { return stored_score_; }
 
@@ -31,6 +33,7 @@ class ReplaySession {
   void start();
   void play(bool on);
   void seek(double time);  // [s]
+  void show_again();       // the picture that is shown, for another overlay
 
  private:
   struct Picture {

@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "cli/options.h"
 #include "cli/session_files.h"
+#include "training/needle_task.h"
+#include "training/stitch_guide.h"
 
 namespace filum {
 namespace {
@@ -122,6 +124,7 @@ Trainer::~Trainer() {
 void Trainer::open_store() {
   try {
     store_.emplace(options_.store_folder);
+    desk_.emplace(options_.store_folder, [this](const std::string& session) { return result_of(session); });
   } catch (const InputError& error) {
     store_warning_ = std::string("Sessions are NOT being stored: ") + error.what();
   }
@@ -217,6 +220,7 @@ void Trainer::carry_out(const ClientMessage& message) {
     if (const auto* start = std::get_if<StartMessage>(&message)) start_task(*start);
     if (std::holds_alternative<StopMessage>(message)) stop_all();
     if (const auto* open = std::get_if<ReplayOpenMessage>(&message)) open_replay(open->session);
+    if (const auto* overlay = std::get_if<OverlayMessage>(&message)) choose_overlay(overlay->kind);
     if (!replay_) return;
     if (std::holds_alternative<PlayMessage>(message)) replay_->play(true);
     if (std::holds_alternative<PauseMessage>(message)) replay_->play(false);
@@ -230,11 +234,19 @@ void Trainer::carry_out(const ClientMessage& message) {
   }
 }
 
+/// An exam shows the tissue as it is.
+void Trainer::choose_overlay(const std::string& kind) {
+  if (view_.exam && kind != "none") throw InputError("overlay", "kind", kind, "none while an exam runs");
+  if (colours_) colours_->choose(kind);
+  if (replay_) replay_->show_again();
+}
+
 void Trainer::stop_all() {
   if (session_) {
     session_->request_stop();
     end_session();
   }
+  view_.exam = false;
   if (replay_) {
     replay_.reset();
     publish_state("idle");
@@ -246,6 +258,7 @@ void Trainer::start_task(const StartMessage& start) {
   view_.task = start.task;
   view_.input = start.input;
   view_.recording = false;
+  view_.exam = start.exam;
   view_.session.clear();
   publish_state("loading");
   Setup setup = load_setup(options_.root, start.task, options_.model_file, start.stiffness);
@@ -279,18 +292,21 @@ void Trainer::start_session(const StartMessage& start, Setup setup, InputDevices
   begin_recording(start, setup, inputs);
   LiveOptions options;
   options.recorder = recorder_.get();
-  options.show = [server = server_.get(), stream = stream_.get()](const LiveView& v) {
+  if (recorder_ && start.exam) recorder_->record_event({0, 0.0, "exam", -1, 1.0, "-"});
+  colours_ = std::make_shared<WallColours>(setup.model);
+  const auto guides = start.exam || !setup.task.needle ? std::vector<StitchGuide>() : stitch_guides(setup.model->description.tissue, setup.model->description.needle, setup.task.needle->lapses);
+  options.show = [server = server_.get(), stream = stream_.get(), colours = colours_](const LiveView& v) {
     if (stream) stream->send_all(v.observation);
     TaskView task = task_view_of(v.status);
     for (const TaskWarning& w : v.handle_warnings) task.warnings.push_back({w.level, w.text, w.code});
-    server->publish_frame(frame_body(v.observation, &task, device_views_of(v.hands, v.device_names)),
+    server->publish_frame(frame_body(v.observation, &task, device_views_of(v.hands, v.device_names), colours->view(v.observation)),
                           v.observation.real_time_factor, v.observation.overruns);
   };
   options.show_event = [server = server_.get()](const TaskEvent& e) {
     server->publish_event({e.time, e.name, e.tool, e.value, e.unit, e.text});
   };
   session_ = std::make_unique<LiveSession>(std::move(setup), std::move(inputs), std::move(options));
-  server_->publish_scene(session_->scene());
+  server_->publish_scene(session_->scene(), guides);
   session_->start();
   set_pointer(session_.get());
   publish_state("running");
@@ -373,10 +389,11 @@ void Trainer::open_replay(const std::string& session) {
   publish_state("loading");
   replay_ = std::make_unique<ReplaySession>(
       file, session,
-      [server = server_.get()](const Observation& o, const TaskView& task) {
-        server->publish_frame(frame_body(o, &task, {}), 1.0, 0);
+      [server = server_.get(), this](const Observation& o, const TaskView& task) {
+        server->publish_frame(frame_body(o, &task, {}, colours_->view(o)), 1.0, 0);
       },
       [server = server_.get()](const ReplayView& replay) { server->publish_replay(replay); });
+  colours_ = std::make_shared<WallColours>(replay_->model());
   server_->publish_scene(replay_->scene());
   const std::string result = result_message(replay_->stored_score(), session);
   if (!result.empty()) server_->publish_result(result);

@@ -16,9 +16,11 @@
 
 #include "cli/knot_pull.h"
 #include "cli/live_session.h"
+#include "cli/rating_desk.h"
 #include "cli/replay_session.h"
 #include "cli/tool_stream.h"
 #include "cli/trainer_lab.h"
+#include "cli/wall_colours.h"
 #include "server/server.h"
 #include "session/store.h"
 
@@ -56,12 +58,13 @@ class Trainer final : public ServerHost {
   void command(const ClientMessage& message) override;
   void controlled(bool by_somebody) override;
   std::optional<std::string> api(std::string_view path) override;
-  std::optional<std::string> post(std::string_view path, const std::string& body) override { return lab_.post(path, body); }
-  std::optional<Document> document(std::string_view path) override { return lab_.document(path); }
+  std::optional<std::string> post(std::string_view path, const std::string& body) override;
+  std::optional<Document> document(std::string_view path) override;
 
  private:
   void open_store();
   std::optional<std::string> recording_of(const std::string& session);
+  std::optional<std::string> result_of(const std::string& session);
   const std::string& input_of(const std::string& session);
   void carry_out(const ClientMessage& message);
   void look_after();
@@ -73,6 +76,7 @@ class Trainer final : public ServerHost {
   void finish_pull();
   void open_replay(const std::string& session);
   void stop_all();
+  void choose_overlay(const std::string& kind);
   void push(const PointerMessage& message);
   void set_pointer(LiveSession* session);
   void warn_of_recording();
@@ -82,6 +86,7 @@ class Trainer final : public ServerHost {
   std::mutex store_mutex_;              // the store is used by the server's thread and by run()'s
   std::optional<Store> store_;
   std::string store_warning_;
+  std::optional<RatingDesk> desk_;      // used by the server's thread only; none without a store
   std::map<std::string, std::string> inputs_;  // by session, as its recording says; guarded by store_mutex_
   std::map<std::string, std::string> titles_;  // by task; constant
   TrainerLab lab_;
@@ -92,6 +97,7 @@ class Trainer final : public ServerHost {
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<LiveSession> session_;
   std::unique_ptr<ReplaySession> replay_;
+  std::shared_ptr<WallColours> colours_;  // of the session or replay that is shown
   std::unique_ptr<KnotPull> pull_;      // of the last session that ended
 
   std::mutex pointer_mutex_;

@@ -42,7 +42,34 @@ const std::string& Trainer::input_of(const std::string& session) {
   }
 }
 
+/// JSON of a stored session's result.
+std::optional<std::string> Trainer::result_of(const std::string& session) {
+  const auto file = recording_of(session);
+  if (!file) return std::nullopt;
+  try {
+    const RecordingReader recording(*file);
+    if (recording.score()) return recording.score()->json;
+  } catch (const InputError&) {
+    // running or damaged: the store's check names the damage
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> Trainer::post(std::string_view path, const std::string& body) {
+  if (desk_)
+    if (auto answer = desk_->post(path, body)) return answer;
+  return lab_.post(path, body);
+}
+
+std::optional<Document> Trainer::document(std::string_view path) {
+  if (desk_)
+    if (auto found = desk_->document(path)) return found;
+  return lab_.document(path);
+}
+
 std::optional<std::string> Trainer::api(std::string_view path) {
+  if (desk_)
+    if (auto answer = desk_->get(path)) return answer;
   constexpr std::string_view kSessions = "/api/sessions";
   if (!path.starts_with(kSessions)) return lab_.get(path);
   path.remove_prefix(kSessions.size());

@@ -103,13 +103,21 @@ bool is_code_character(char c) {
 }
 
 StartMessage read_start(Fields& fields) {
-  fields.only({"task", "input", "code", "take_over", "stiffness"});
-  StartMessage m{fields.text("task", 64), fields.text("input", 16), "", false, 1.0};
+  fields.only({"task", "input", "code", "take_over", "stiffness", "exam"});
+  StartMessage m{fields.text("task", 64), fields.text("input", 16), "", false, 1.0, false};
   if (m.input != "pointer" && m.input != "demo" && m.input != "device") fields.fault("input", "pointer, demo or device");
   if (fields.has("code")) m.code = fields.text("code", 32);
   if (!std::all_of(m.code.begin(), m.code.end(), is_code_character)) fields.fault("code", "letters, digits, - and _ only");
   if (fields.has("take_over")) m.take_over = fields.flag("take_over");
   if (fields.has("stiffness")) m.stiffness = fields.number("stiffness", 0.1, 10.0);
+  if (fields.has("exam")) m.exam = fields.flag("exam");
+  return m;
+}
+
+OverlayMessage read_overlay(Fields& fields) {
+  fields.only({"kind"});
+  OverlayMessage m{fields.text("kind", 16)};
+  if (m.kind != "none" && m.kind != "strain" && m.kind != "pressure") fields.fault("kind", "none, strain or pressure");
   return m;
 }
 
@@ -141,6 +149,7 @@ ClientMessage read(const std::string& type, Fields& fields) {
   if (type == "start") return read_start(fields);
   if (type == "pointer") return read_pointer(fields);
   if (type == "replay_open") return read_replay_open(fields);
+  if (type == "overlay") return read_overlay(fields);
   if (type == "ack") {
     fields.only({"frame"});
     return AckMessage{fields.count("frame", std::numeric_limits<std::uint64_t>::max())};

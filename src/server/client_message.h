@@ -17,6 +17,7 @@ struct StartMessage {
   std::string code;   // trainee code, may be empty; never a name
   bool take_over = false;
   double stiffness = 1.0;  // of the brain, as a surgeon turns the dial
+  bool exam = false;       // without guides, hints and overlays
 };
 struct StopMessage {};
 struct TakeControlMessage {};
@@ -38,9 +39,12 @@ struct SeekMessage {
 };
 struct PlayMessage {};
 struct PauseMessage {};
+struct OverlayMessage {
+  std::string kind;  // "none" | "strain" | "pressure"
+};
 
 using ClientMessage = std::variant<StartMessage, StopMessage, TakeControlMessage, PointerMessage, AckMessage, ReplayOpenMessage,
-                                   SeekMessage, PlayMessage, PauseMessage>;
+                                   SeekMessage, PlayMessage, PauseMessage, OverlayMessage>;
 
 /// Why a request is not carried out, in the words of the `error` message.
 struct Refusal {

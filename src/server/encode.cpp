@@ -139,7 +139,7 @@ std::string hello_message(const HelloView& hello, int client) {
                   {"inputs", hello.inputs}});
 }
 
-std::string scene_message(const SceneDescription& scene) {
+std::string scene_message(const SceneDescription& scene, const std::vector<StitchGuide>& guides) {
   json tools = json::array();
   for (int i = 0; i < std::min(scene.n_tools, static_cast<int>(scene.tools.size())); ++i) {
     const ToolShape& t = scene.tools[static_cast<std::size_t>(i)];
@@ -175,6 +175,7 @@ std::string scene_message(const SceneDescription& scene) {
                   {"brain", brain_scene_json(scene.brain, scene.n_tools)},
                   {"needle", needle_scene_json(scene.needle)},
                   {"tissue", tissue_scene_json(scene.tissue)},
+                  {"guides", list_json(guides, guide_json)},
                   {"capacity", scene.capacity}});
 }
 
@@ -193,6 +194,7 @@ std::string session_state_message(const TrainerView& trainer, int controller, bo
                   {"in_control", in_control},
                   {"clients", clients},
                   {"recording", trainer.recording},
+                  {"exam", trainer.exam},
                   {"session", optional_text(trainer.session)},
                   {"warning", trainer.warning},
                   {"knot_test", trainer.knot_test < 0.0 ? json(nullptr) : json(trainer.knot_test)}});
@@ -210,7 +212,7 @@ std::string error_message(const Refusal& refusal) {
   return text_of({{"type", "error"}, {"code", refusal.code}, {"what", refusal.what}, {"advice", refusal.advice}});
 }
 
-std::string frame_body(const Observation& o, const TaskView* task, const std::vector<DeviceView>& devices) {
+std::string frame_body(const Observation& o, const TaskView* task, const std::vector<DeviceView>& devices, const OverlayView& overlay) {
   const int nodes = std::min(o.n_nodes, static_cast<int>(o.positions.cols()));
   const int edges = std::clamp(nodes - 1, 0, static_cast<int>(o.tension.size()));
   FrameWriter w;
@@ -228,6 +230,7 @@ std::string frame_body(const Observation& o, const TaskView* task, const std::ve
   write_objects(w, o);
   w.raw(",\"brain\":").raw(brain_frame_text(o));
   w.raw(",\"needle\":").raw(needle_frame_text(o.needle)).raw(",\"tissue\":").raw(tissue_frame_text(o.tissue));
+  w.raw(",\"overlay\":").raw(overlay_text(overlay));
   w.raw(",\"overruns\":").whole(static_cast<long long>(o.overruns)).raw(",\"real_time_factor\":").number(o.real_time_factor);
   w.raw(",\"task\":").raw(task == nullptr ? "null" : text_of(task_json(*task)));
   w.raw(",\"devices\":").raw(text_of(list_json(devices, device_json))).raw("}");

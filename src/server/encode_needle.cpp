@@ -20,6 +20,13 @@ void append(std::string& out, const double* x, int n, int digits) {
   out.push_back(']');
 }
 
+json place_json(const GuidePlace& p) {
+  json path = json::array();
+  for (const Vec3& point : p.path)
+    for (int c = 0; c < 3; ++c) path.push_back(std::round(point[c] * 1e8) / 1e8);
+  return {{"at", {p.at.x(), p.at.y(), p.at.z()}}, {"vertex", p.vertex}, {"path", path}};
+}
+
 const char* word(PassObservation::State state) {
   switch (state) {
     case PassObservation::State::open:
@@ -52,6 +59,8 @@ json tissue_scene_json(const TissueDescription& t) {
   return {{"name", t.name}, {"kind", t.kind}, {"thickness", t.thickness}, {"triangles", triangles}, {"rest", rest}};
 }
 
+json guide_json(const StitchGuide& guide) { return {{"in", place_json(guide.in)}, {"out", place_json(guide.out)}}; }
+
 std::string needle_frame_text(const NeedleObservation& n) {
   if (!n.present) return "null";
   const double wxyz[4] = {n.X_WN.q.w(), n.X_WN.q.x(), n.X_WN.q.y(), n.X_WN.q.z()};
@@ -79,6 +88,15 @@ std::string tissue_frame_text(const TissueObservation& t) {
     out += "}";
   }
   return out + "]}";
+}
+
+std::string overlay_text(const OverlayView& overlay) {
+  if (overlay.kind.empty() || overlay.values == nullptr) return "null";
+  std::vector<double> shown = *overlay.values;
+  for (double& value : shown) value *= overlay.factor;
+  std::string out = "{\"kind\":\"" + overlay.kind + "\",\"unit\":\"" + overlay.unit + "\",\"full\":" + json(overlay.full).dump() + ",\"values\":";
+  append(out, shown.data(), static_cast<int>(shown.size()), 3);
+  return out + "}";
 }
 
 }  // namespace filum

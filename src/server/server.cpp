@@ -457,8 +457,8 @@ void Server::publish_devices(std::vector<DeviceView> devices) {
   impl_->post([impl = impl_.get(), devices = std::move(devices)] { impl->options.hello.devices = devices; });
 }
 
-void Server::publish_scene(const SceneDescription& scene) {
-  impl_->post([impl = impl_.get(), text = shared(scene_message(scene))] {
+void Server::publish_scene(const SceneDescription& scene, const std::vector<StitchGuide>& guides) {
+  impl_->post([impl = impl_.get(), text = shared(scene_message(scene, guides))] {
     impl->scene = text;
     impl->result.reset();
     impl->replay.reset();

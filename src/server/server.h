@@ -62,7 +62,7 @@ class Server {
   void publish_trainer(const TrainerView& trainer);
   void publish_devices(std::vector<DeviceView> devices);
   /// A new scene also takes back the result and the replay of the one before.
-  void publish_scene(const SceneDescription& scene);
+  void publish_scene(const SceneDescription& scene, const std::vector<StitchGuide>& guides = {});
   void publish_result(std::string result_message);
   void publish_replay(const ReplayView& replay);
   /// `body` from frame_body(); each browser gets the newest one it has credit for.

@@ -53,6 +53,15 @@ struct TaskView {
   RetractionView retraction;
 };
 
+/// A number for each vertex of the tissue, to be coloured by.
+struct OverlayView {
+  std::string kind;                            // "strain" | "pressure", empty: none
+  std::string unit;
+  double full = 0.0;                           // [unit], end of the scale
+  double factor = 1.0;                         // from a value to the unit
+  const std::vector<double>* values = nullptr;  // valid while the view is encoded
+};
+
 struct EventView {
   double time = 0.0;  // [s]
   std::string name;
@@ -71,6 +80,7 @@ struct TrainerView {
   std::string session;         // identifier, empty: not recorded
   std::string warning;         // for people, empty: all well
   double knot_test = -1.0;     // share of the pull test of the last knot that is done; below 0: none runs
+  bool exam = false;           // no guides, hints or overlays
 };
 
 struct ReplayView {

@@ -1,6 +1,7 @@
 #pragma once
 // What a task with a needle asks for (training/needle_watch.h), and by which rules lapses are found (training/lapse.h).
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,13 @@ struct NeedleGoal {
   double tail = 0.0;              // [m], draw: thread left before the first entry
 };
 
+struct RatingScale;  // training/rating_scale.h
+
 struct NeedleTask {
   std::vector<NeedleGoal> goals;
   LapseRules lapses;
   bool has_tissue = false;
+  std::shared_ptr<const RatingScale> scale;  // of raters, or none
 };
 
 /// A step of a task file. Throws InputError.

@@ -165,6 +165,7 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join) const {
   }
   r.soundness = tissue_.soundness;
   r.rules = task_.lapses.title;
+  r.scale = task_.scale;
   return r;
 }
 

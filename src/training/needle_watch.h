@@ -32,6 +32,7 @@ struct NeedleReport {
   std::string rules;                     // title of the rules
   double soundness = 1.0;                // of the weakest element of the tissue at the end: 1 whole, 0 gone
   std::optional<JoinReport> join;        // of a vessel with the clamps off
+  std::shared_ptr<const RatingScale> scale;  // that raters mark it by, or none
 };
 
 /// What a rubric line looks at; NaN for measures of other tasks.

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "training/patency_factors.h"
 #include "training/pressure_map.h"
+#include "training/rating_scale.h"
 
 namespace filum {
 namespace {
@@ -118,6 +120,7 @@ Json pressure_json(const PressureReport& p) {
 Json stitch_json(const Stitch& s, double thickness) {
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
   return {{"time", finite(s.time)},
+          {"passes", {s.first, s.second}},
           {"bite_m", {finite(s.bite[0]), finite(s.bite[1])}},
           {"bite_thicknesses", {finite(s.bite[0] / thickness), finite(s.bite[1] / thickness)}},
           {"entry_angle_deg", finite(kDegrees * s.entry_angle)},
@@ -148,6 +151,24 @@ Json leak_json(const JoinReport& j) {
           {"solver_sound", j.sound}};
 }
 
+/// The items of a rating scale with what the simulator estimates of them; null: left to the rater.
+Json scale_json(const RatingScale& s, const NeedleReport& report) {
+  Json items = Json::array();
+  const std::vector<ScaleEstimate> all = estimates(s, report);
+  for (std::size_t k = 0; k < s.items.size(); ++k) {
+    const ScaleItem& item = s.items[k];
+    const ScaleEstimate& e = all[k];
+    items.push_back({{"name", item.name},
+                     {"title", item.title},
+                     {"points", item.words},
+                     {"estimate", e.points ? Json(*e.points) : Json(nullptr)},
+                     {"value", e.value ? finite(*e.value) : Json(nullptr)},
+                     {"unit", e.unit},
+                     {"why", e.why}});
+  }
+  return {{"name", s.name}, {"title", s.title}, {"source", s.source}, {"label", "simulator-derived estimates, not validated"}, {"most", s.most}, {"items", items}};
+}
+
 void add_needle(const NeedleReport& n, Json& json) {
   json["needle"] = {{"takes", n.takes}, {"drops", n.drops}, {"angle_error_rad", finite(n.angle_error)}, {"held_at_share", finite(n.share)}, {"present_error_m", finite(n.present_error)}};
   if (!n.has_tissue) return;
@@ -157,8 +178,14 @@ void add_needle(const NeedleReport& n, Json& json) {
   json["lapses"] = Json::array();
   for (const Lapse& l : n.lapses) json["lapses"].push_back({{"name", l.name}, {"stitch", l.stitch}, {"time", finite(l.time)}, {"value", finite(l.value)}, {"unit", l.unit}});
   json["lapse_rules"] = n.rules;
+  if (n.scale) json["scale"] = scale_json(*n.scale, n);
   json["tissue_soundness"] = finite(n.soundness);
   if (n.join) json["leak"] = leak_json(*n.join);
+  const std::vector<PatencyFactor> factors = patency_factors(n);
+  if (factors.empty()) return;
+  json["thrombosis_factors"] = Json::array();
+  for (const PatencyFactor& f : factors)
+    json["thrombosis_factors"].push_back({{"name", f.name}, {"title", f.title}, {"value", finite(f.value)}, {"unit", f.unit}, {"raised", f.raised}, {"source", f.source}});
 }
 
 Json events_json(const std::vector<TaskEvent>& events) {

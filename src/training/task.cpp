@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "training/needle_task.h"
+#include "training/rating_scale.h"
 #include "training/retraction.h"
 
 namespace filum {
@@ -146,6 +147,7 @@ void parse_needle(const YamlNode& file, const std::string& root, Task& task) {
   auto needle = std::make_shared<NeedleTask>();
   needle->has_tissue = file.has("lapses");
   if (needle->has_tissue) needle->lapses = load_lapse_rules(root + "/" + file.text("lapses"));
+  if (needle->has_tissue && file.has("scale")) needle->scale = std::make_shared<const RatingScale>(load_rating_scale(root + "/" + file.text("scale")));
   for (const YamlNode& node : file.items("steps")) {
     TaskStep step;
     step.throw_number = 0;

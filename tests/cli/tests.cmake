@@ -10,6 +10,8 @@ filum_test(cli/reconcile_job)
 filum_test(cli/calibration_session)
 filum_test(cli/camera_session)
 filum_test(cli/study_job)
+filum_test(cli/rating_desk)
+filum_test(cli/wall_colours)
 if(TARGET filum)
   add_test(NAME cli.serial_run COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/serial_run_test.sh $<TARGET_FILE:filum>
            $<TARGET_FILE:filum_serial_feeder> ${PROJECT_SOURCE_DIR})

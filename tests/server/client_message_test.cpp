@@ -84,8 +84,8 @@ TEST(ClientMessage, RefusesWhatIsNoMessage) {
 TEST(ClientMessage, AgreesWithTheSchema) {
   const SchemaCheck schema;
   const std::vector<json> good = {
-      {{"type", "start"}, {"task", "knot-square"}, {"input", "device"}, {"code", "A_1"}, {"take_over", true}, {"stiffness", 0.5}},
-      {{"type", "stop"}}, {{"type", "take_control"}}, {{"type", "play"}}, {{"type", "pause"}},
+      {{"type", "start"}, {"task", "knot-square"}, {"input", "device"}, {"code", "A_1"}, {"take_over", true}, {"stiffness", 0.5}, {"exam", true}},
+      {{"type", "stop"}}, {{"type", "take_control"}}, {{"type", "play"}}, {{"type", "pause"}}, {{"type", "overlay"}, {"kind", "strain"}},
       {{"type", "ack"}, {"frame", 3}}, {{"type", "seek"}, {"time", 0.0}}, {{"type", "replay_open"}, {"session", "x"}},
       json::parse(kPointer)};
   EXPECT_EQ(schema.definitions().at("ClientMessage").at("oneOf").size(), good.size());

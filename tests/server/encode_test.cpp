@@ -83,6 +83,14 @@ TEST(Encode, EmptySceneIsAFrameToo) {
   EXPECT_EQ(frame.at("positions").size(), 0u);
 }
 
+TEST(Encode, AnOverlayIsToldInItsUnitWhileItIsThere) {
+  const std::vector<double> values = {0.0, 0.125, std::numeric_limits<double>::quiet_NaN()};
+  const json frame = json::parse(frame_message(1, frame_body(Observation(), nullptr, {}, {"strain", "%", 30.0, 100.0, &values})));
+  EXPECT_EQ(SchemaCheck().fault(frame, "Frame"), "");
+  EXPECT_EQ(frame.at("overlay").at("values"), json({0.0, 12.5, 0.0}));
+  EXPECT_TRUE(json::parse(frame_message(1, frame_body(Observation(), nullptr, {}))).at("overlay").is_null());
+}
+
 TEST(Encode, EveryOtherMessageFollowsTheSchema) {
   const SchemaCheck schema;
   const auto fault = [&schema](const std::string& text) { return schema.fault(json::parse(text), "ServerMessage"); };
@@ -92,6 +100,9 @@ TEST(Encode, EveryOtherMessageFollowsTheSchema) {
   scene.n_tools = 2;
   scene.tools[0].kind = scene.tools[1].kind = "forceps";
   EXPECT_EQ(fault(scene_message(scene)), "");
+  const StitchGuide guide{{Vec3(1e-3, 0, 0), 4, {Vec3::Zero(), Vec3(0, 0, -1e-4)}}, {Vec3(2e-3, 0, 0), 5, {}}};
+  EXPECT_EQ(fault(scene_message(scene, {guide})), "");
+  EXPECT_EQ(json::parse(scene_message(scene, {guide})).at("guides")[0].at("in").at("path"), json({0.0, 0.0, 0.0, 0.0, 0.0, -1e-4}));
   scene.has_post = true;
   EXPECT_EQ(fault(scene_message(scene)), "");
   EXPECT_EQ(json::parse(scene_message(scene)).at("post").at("radius"), 0.5e-3);

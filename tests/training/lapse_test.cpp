@@ -89,10 +89,13 @@ TEST(Lapse, HalfAStitchHasOneBite) {
 }
 
 TEST(Lapse, RulesComeFromAFileThatSaysWhereFrom) {
-  for (const char* name : {"card", "vessel"}) {
+  for (const char* name : {"card", "vessel", "anastomosis"}) {
     const LapseRules r = load_lapse_rules(std::string(FILUM_SOURCE_DIR) + "/curricula/lapses/" + name + ".yaml");
     EXPECT_FALSE(r.source.empty());
     EXPECT_NEAR(r.oblique, 0.349, 1e-3);
+    const bool tied = std::string(name) == "anastomosis";
+    EXPECT_EQ(std::isfinite(r.loose_gap), tied) << "edges that nobody was asked to join may stand apart";
+    EXPECT_EQ(std::isfinite(r.line_gap), tied);
   }
 }
 

@@ -82,6 +82,21 @@ export class Microscope {
     }
   }
 
+  /// The way through the tissue nearest to a point of the picture (-1 to 1, y up), within a fiftieth of the field; -1: none. One eye only.
+  passAt(x: number, y: number): number {
+    if (this.stereo === "side-by-side") return -1;
+    this.place(0);
+    this.camera.updateMatrixWorld();
+    let nearest = 0.04, found = -1;
+    this.stage.passes().forEach((places, k) => {
+      for (const place of places) {
+        const at = place.project(this.camera), distance = Math.hypot(at.x - x, at.y - y);
+        if (distance < nearest) { nearest = distance; found = k; }
+      }
+    });
+    return found;
+  }
+
   dispose(): void {
     this.picture?.dispose();
     for (const eye of this.eyes) eye.dispose();

@@ -1,7 +1,8 @@
 // The needle and the tissue it goes through. Draws what the scene and its frames say.
 import * as THREE from "three";
-import type { NeedleShape, NeedleState, TissueShape, TissueState } from "../messages";
+import type { Guide, NeedleShape, NeedleState, Overlay, TissueShape, TissueState } from "../messages";
 import type { Materials } from "./materials";
+import { cividis } from "./palette";
 
 const kMm = 1000;
 const kAlong = 64, kRound = 12; // rings along the wire, corners of a ring
@@ -47,10 +48,18 @@ export class Needle {
 
 export class Tissue {
   readonly group = new THREE.Group();
-  private readonly surface: THREE.Mesh<THREE.BufferGeometry>;
+  private readonly surface: THREE.Mesh;
+  private readonly wet: THREE.Material;
+  private readonly plain = new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.DoubleSide });
   private readonly holes: THREE.Mesh[] = [];
   private readonly hole = new THREE.SphereGeometry(0.06, 12, 8);
   private readonly dark = new THREE.MeshBasicMaterial({ color: 0x40161a });
+  private readonly ring = new THREE.TorusGeometry(0.16, 0.025, 8, 32);
+  private readonly bright = new THREE.MeshBasicMaterial({ color: 0xffe27a, depthTest: false, transparent: true });
+  private readonly rings: THREE.Mesh[] = [];
+  private readonly bridge = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0xffe27a, depthTest: false, transparent: true }));
+  private places: THREE.Vector3[][] = []; // of each way through the tissue
+  private marked: number[] = [];
 
   constructor(shape: TissueShape, painted: boolean) {
     const geometry = new THREE.BufferGeometry();
@@ -61,9 +70,49 @@ export class Tissue {
     const material = painted
       ? new THREE.MeshLambertMaterial(look)
       : new THREE.MeshPhysicalMaterial({ ...look, roughness: 0.45, clearcoat: shape.kind === "card" ? 0.1 : 0.8, clearcoatRoughness: 0.25 });
+    this.wet = material;
     this.surface = new THREE.Mesh(geometry, material);
     this.surface.receiveShadow = this.surface.castShadow = true;
-    this.group.add(this.surface);
+    this.group.add(this.surface, this.bridge);
+    this.bridge.visible = false;
+    this.bridge.renderOrder = 3;
+    this.bridge.frustumCulled = false;
+  }
+
+  passes(): THREE.Vector3[][] { return this.places.map((one) => one.map((place) => place.clone())); }
+
+  /// A ring round every hole of these ways through the tissue, and a line from the first to the last: seen through everything.
+  mark(passes: number[]): void {
+    this.marked = passes;
+    this.showMarks();
+  }
+
+  private showMarks(): void {
+    const at = this.marked.flatMap((pass) => this.places[pass] ?? []);
+    while (this.rings.length < at.length) {
+      const mesh = new THREE.Mesh(this.ring, this.bright);
+      mesh.renderOrder = 3;
+      this.rings.push(mesh);
+      this.group.add(mesh);
+    }
+    this.rings.forEach((mesh, k) => { mesh.visible = k < at.length; if (mesh.visible) mesh.position.copy(at[k]); });
+    this.bridge.visible = at.length > 1;
+    if (at.length > 1) this.bridge.geometry.setFromPoints(at);
+  }
+
+  /// Colours by a number for each vertex, or the tissue's own colour.
+  colour(overlay: Overlay | null): void {
+    const { geometry } = this.surface;
+    this.surface.material = overlay ? this.plain : this.wet; // unlit: the colours are those of the scale
+    if (!overlay) return;
+    let colours = geometry.getAttribute("color") as THREE.BufferAttribute | undefined;
+    if (!colours) geometry.setAttribute("color", (colours = new THREE.BufferAttribute(new Float32Array(3 * geometry.getAttribute("position").count), 3)));
+    const shade = new THREE.Color();
+    for (let i = 0; i < Math.min(colours.count, overlay.values.length); ++i) {
+      shade.setRGB(...cividis(overlay.values[i] / overlay.full), THREE.SRGBColorSpace);
+      colours.setXYZ(i, shade.r, shade.g, shade.b);
+    }
+    colours.needsUpdate = true;
   }
 
   update(state: TissueState): void {
@@ -72,11 +121,9 @@ export class Tissue {
     for (let i = 0; i < count; ++i) array[i] = state.positions[i] * kMm;
     position.needsUpdate = true;
     this.surface.geometry.computeVertexNormals();
-    const at: number[][] = [];
-    for (const pass of state.passes) {
-      at.push(pass.entry);
-      if (pass.exit) at.push(pass.exit);
-    }
+    this.places = state.passes.map((pass) => [pass.entry, ...(pass.exit ? [pass.exit] : [])].map(([x, y, z]) => new THREE.Vector3(x * kMm, y * kMm, z * kMm)));
+    const at = this.places.flat();
+    this.showMarks();
     while (this.holes.length < at.length) {
       const mesh = new THREE.Mesh(this.hole, this.dark);
       this.holes.push(mesh);
@@ -84,7 +131,49 @@ export class Tissue {
     }
     this.holes.forEach((mesh, k) => {
       mesh.visible = k < at.length;
-      if (mesh.visible) mesh.position.set(at[k][0] * kMm, at[k][1] * kMm, at[k][2] * kMm);
+      if (mesh.visible) mesh.position.copy(at[k]);
     });
   }
+}
+
+/// Bites and the needle's way for beginners: a ring where it goes in, a square where it comes out, a dotted line for its point.
+export class Guides {
+  readonly group = new THREE.Group();
+  private readonly parts: { vertex: number; group: THREE.Group }[] = [];
+
+  constructor(guides: readonly Guide[], private readonly rest: readonly number[]) {
+    const ink = new THREE.LineBasicMaterial({ color: 0x0a3d91, depthTest: false, transparent: true, opacity: 0.95 });
+    const way = new THREE.LineDashedMaterial({ color: 0x0a3d91, dashSize: 0.08, gapSize: 0.05, depthTest: false, transparent: true, opacity: 0.8 });
+    const ring = outline(24, 0.1), square = outline(4, 0.12);
+    for (const guide of guides) {
+      for (const [place, shape] of [[guide.in, ring], [guide.out, square]] as const) {
+        const group = new THREE.Group(), mark = new THREE.LineLoop(shape, ink), points: THREE.Vector3[] = [];
+        mark.position.set(place.at[0] * kMm, place.at[1] * kMm, place.at[2] * kMm);
+        for (let k = 0; k + 2 < place.path.length; k += 3) points.push(new THREE.Vector3(place.path[k] * kMm, place.path[k + 1] * kMm, place.path[k + 2] * kMm));
+        const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), way);
+        line.computeLineDistances();
+        mark.renderOrder = line.renderOrder = 2;
+        group.add(mark, line);
+        this.parts.push({ vertex: place.vertex, group });
+        this.group.add(group);
+      }
+    }
+  }
+
+  /// Each place moves with its vertex of the tissue.
+  update(state: TissueState): void {
+    for (const { vertex, group } of this.parts) {
+      const k = 3 * vertex;
+      if (vertex < 0 || k + 2 >= state.positions.length) continue;
+      group.position.set((state.positions[k] - this.rest[k]) * kMm, (state.positions[k + 1] - this.rest[k + 1]) * kMm, (state.positions[k + 2] - this.rest[k + 2]) * kMm);
+    }
+  }
+}
+
+/// Corners of a regular figure in the plane of the background sheet [mm].
+function outline(corners: number, radius: number): THREE.BufferGeometry {
+  return new THREE.BufferGeometry().setFromPoints(Array.from({ length: corners }, (_, k) => {
+    const turn = (2 * Math.PI * (k + 0.5)) / corners;
+    return new THREE.Vector3(radius * Math.cos(turn), radius * Math.sin(turn), 0);
+  }));
 }

@@ -8,7 +8,7 @@ import { Brain } from "./brain";
 import { FlatShadows } from "./flat_shadows";
 import { Instrument } from "./instruments";
 import { Laboratory } from "./laboratory";
-import { Needle, Tissue } from "./needle";
+import { Guides, Needle, Tissue } from "./needle";
 import { kSheet, paintedMaterials, physicalMaterials, type Materials } from "./materials";
 import { ThreadTube } from "./thread";
 
@@ -31,6 +31,9 @@ export class Stage {
   private laboratory: Laboratory | null = null;
   private needle: Needle | null = null;
   private tissue: Tissue | null = null;
+  private marked: number[] = [];
+  private guides: Guides | null = null;
+  private guidesShown = false;
   private readonly points: { array: Float64Array } = { array: new Float64Array(0) };
   private gaps: number[] = [];
   private threadRadius = 0.0125;
@@ -107,6 +110,10 @@ export class Stage {
     if (this.needle) this.content.add(this.needle.mesh);
     this.tissue = message.tissue ? new Tissue(message.tissue, this.painted) : null;
     if (this.tissue) this.content.add(this.tissue.group);
+    this.tissue?.mark(this.marked);
+    this.guides = message.guides?.length && message.tissue ? new Guides(message.guides, message.tissue.rest) : null;
+    if (this.guides) this.content.add(this.guides.group);
+    this.showGuides(this.guidesShown);
     this.flatShadows.follow(this.content);
   }
 
@@ -124,7 +131,23 @@ export class Stage {
     this.laboratory?.update(frame);
     if (frame.needle) this.needle?.update(frame.needle);
     if (frame.tissue) this.tissue?.update(frame.tissue);
+    this.tissue?.colour(frame.overlay ?? null);
+    if (frame.tissue) this.guides?.update(frame.tissue);
   }
+
+  /// Marks ways through the tissue until others are marked.
+  mark(passes: number[]): void {
+    this.marked = passes;
+    this.tissue?.mark(passes);
+  }
+
+  showGuides(on: boolean): void {
+    this.guidesShown = on;
+    if (this.guides) this.guides.group.visible = on;
+  }
+
+  /// Places in the field where each way through the tissue begins and ends [mm].
+  passes(): THREE.Vector3[][] { return this.tissue?.passes() ?? []; }
 
   /// Light follows the microscope: an oblique lamp beside the objective for the shadows and a weak one along the view.
   aim(target: THREE.Vector3, eye: THREE.Vector3, field: number, shadows: boolean, mapSize: number): void {
@@ -163,6 +186,7 @@ export class Stage {
     this.laboratory = null;
     this.needle = null;
     this.tissue = null;
+    this.guides = null;
   }
 
   private addSheet(): void {

@@ -13,6 +13,7 @@ export class FieldView {
   readonly microscope: Microscope;
   ondrawn: (ids: number[], frame: Frame) => void = () => {};
   onoptics: () => void = () => {};
+  onclick: (event: MouseEvent) => void = () => {}; // not after a drag
   private readonly canvas = h("canvas", { "aria-hidden": "true" });
   private readonly reticles: SVGElement[] = [];
   private readonly lenses = h("div", { class: "lenses" });
@@ -23,6 +24,7 @@ export class FieldView {
   private lastTick = 0;
   private drewLast = false;
   private reticleOn = true;
+  private guidesOn = false;
 
   constructor() {
     this.surface = h("div", { class: "surface", tabindex: 0, role: "application", "aria-label": "View through the microscope. Press question mark for the keys, Escape to leave." },
@@ -36,6 +38,9 @@ export class FieldView {
     }
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", () => { this.dirty = true; });
+    let pressed = [0, 0];
+    this.surface.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
+    this.surface.addEventListener("click", (event) => { if (Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4) this.onclick(event); });
     new ResizeObserver(() => this.fit()).observe(this.element);
     this.drawReticle();
   }
@@ -95,6 +100,31 @@ export class FieldView {
     const { optics } = this.microscope;
     Object.assign(optics, { magnification: this.microscope.startMagnification, focus: this.microscope.stage.focusHeight, centre: [...this.microscope.stage.centre], eyeDistance: 22 });
     this.changed();
+  }
+  /// Ways through the tissue to be marked.
+  showGuides(on: boolean): void { this.guidesOn = on; this.microscope.stage.showGuides(on); this.changed(); }
+  get guidesShown(): boolean { return this.guidesOn; }
+  mark(passes: number[]): void { this.microscope.stage.mark(passes); this.changed(); }
+  /// The way through the tissue that is nearest to a point of the page, -1: none is near.
+  passAt(clientX: number, clientY: number): number {
+    const box = this.canvas.getBoundingClientRect();
+    return this.microscope.passAt((2 * (clientX - box.left)) / box.width - 1, 1 - (2 * (clientY - box.top)) / box.height);
+  }
+  /// Puts the field over these ways through the tissue; the middle of the scene where there are none.
+  look(passes: number[], magnification: number): void {
+    const { optics, stage } = this.microscope, known = stage.passes(), places = passes.flatMap((pass) => known[pass] ?? []);
+    optics.magnification = clampMagnification(magnification);
+    optics.centre = [...stage.centre];
+    optics.focus = stage.focusHeight;
+    for (const [c, axis] of (["x", "y"] as const).entries()) if (places.length > 0) optics.centre[c] = places.reduce((sum, place) => sum + place[axis], 0) / places.length;
+    if (places.length > 0) optics.focus = places.reduce((sum, place) => sum + place.z, 0) / places.length;
+    this.changed();
+  }
+  /// The newest frame as it is seen now, a JPEG in an address.
+  picture(): string {
+    if (this.frame) this.microscope.update(this.frame);
+    this.microscope.draw();
+    return this.canvas.toDataURL("image/jpeg", 0.85);
   }
   /// Quality was chosen by hand.
   redraw(): void { this.changed(); }

@@ -10,6 +10,7 @@ import { opticsBar } from "./field_view";
 import { microscopeKey, microscopeMouse } from "./microscope_keys";
 import { ForcePanel, HealthPanel, StepPanel, toolTitle, WarningList } from "./panels";
 import { quantity, words, kFrequent } from "./format";
+import { TissuePanel } from "./tissue_panel";
 
 const kPanelsEvery = 60; // [ms]
 const kEventsShown = 5;
@@ -31,6 +32,7 @@ export class LivePage implements Page {
   private steps: StepPanel | null = null;
   private forces: ForcePanel | null = null;
   private brain: BrainPanel | null = null;
+  private tissue: TissuePanel | null = null;
   private lastPanels = 0;
   private refused = false; // the last start; its reason stays on the page
 
@@ -80,6 +82,7 @@ export class LivePage implements Page {
   }
 
   dispose(): void {
+    this.tissue?.dispose();
     this.pointer.dispose();
     this.unhook();
     this.view.stop();
@@ -108,7 +111,11 @@ export class LivePage implements Page {
     const back = h("button", { class: "quietbutton", onclick: () => this.focus() }, "To the field");
     this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), this.events), h("div", { class: "buttons" }, end, back));
     this.brain = scene.brain ? new BrainPanel(scene, () => this.view.redraw()) : null;
-    this.right.append(this.brain ? this.brain.element : this.forces.element, this.health.element);
+    this.tissue?.dispose();
+    this.tissue = scene.tissue && !this.app.session?.exam ? new TissuePanel((message) => this.app.send(message), scene.guides?.length ?? 0, this.view.guidesShown, (on) => this.view.showGuides(on)) : null;
+    if (this.tissue) this.right.append(this.tissue.element);
+    this.right.append(this.brain ? this.brain.element : this.forces.element);
+    this.right.append(this.health.element);
   }
 
   private showSession(): void {
@@ -152,9 +159,11 @@ export class LivePage implements Page {
     if (now - this.lastPanels < kPanelsEvery) return;
     this.lastPanels = now;
     if (this.over.querySelector(".loading")) clear(this.over);
+    this.element.classList.toggle("exam", this.app.session?.exam === true);
     this.steps?.show(frame.task, frame.time);
     if (this.app.scene) this.brain?.show(frame, this.app.scene);
     this.forces?.show(frame, this.pointer.live ? this.pointer.hands.active : null);
+    this.tissue?.show(frame);
     this.health.show(frame);
   }
 

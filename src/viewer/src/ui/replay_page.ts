@@ -1,6 +1,6 @@
 // A recorded session seen again: the same field and bars, with a time line that can be dragged.
 import type { App, Page } from "../app";
-import type { ServerMessage, TimedEvent } from "../messages";
+import type { Result, ServerMessage, TimedEvent } from "../messages";
 import type { LineState } from "../net/connection";
 import { clear, h, setText } from "./dom";
 import { opticsBar } from "./field_view";
@@ -8,6 +8,8 @@ import { clock, quantity, words } from "./format";
 import { microscopeKey, microscopeMouse } from "./microscope_keys";
 import { BrainPanel } from "./brain_panel";
 import { ForcePanel, StepPanel, WarningList } from "./panels";
+import { TissuePanel } from "./tissue_panel";
+import { StitchList } from "./stitch_panel";
 
 const kPanelsEvery = 60; // [ms]
 const kSeekEvery = 50; // [ms], while dragging
@@ -29,6 +31,10 @@ export class ReplayPage implements Page {
   private steps: StepPanel | null = null;
   private forces: ForcePanel | null = null;
   private brain: BrainPanel | null = null;
+  private stitches: StitchList | null = null;
+  private tissue: TissuePanel | null = null;
+  private wantedStitch: number; // from the address, -1: none
+  private result: Result | null = null;
   private events: TimedEvent[] = [];
   private lastPanels = 0;
   private lastSeek = 0;
@@ -37,11 +43,13 @@ export class ReplayPage implements Page {
   private opened = false;
 
   constructor(private readonly app: App, argument: string) {
-    const [id, time] = argument.split("/");
+    const [id, time, stitch] = argument.split("/");
     this.id = id;
+    this.wantedStitch = stitch?.startsWith("stitch-") ? Number(stitch.slice(7)) - 1 : -1;
     this.wanted = time !== undefined && Number.isFinite(Number(time)) ? Number(time) : null;
     this.view = app.microscope();
     this.unhook = microscopeMouse(this.view, () => true);
+    this.view.onclick = (event) => this.clicked(event);
     this.scrub.addEventListener("input", () => this.dragged());
     this.scrub.addEventListener("change", () => { this.dragging = false; this.seek(Number(this.scrub.value)); });
     const transport = h("div", { class: "transport", role: "group", "aria-label": "Replay" }, this.play, h("div", { class: "timeline" }, this.marks, this.scrub), this.clock);
@@ -58,7 +66,7 @@ export class ReplayPage implements Page {
       case "hello": this.opened = false; this.open(); break;
       case "scene": this.describe(); break;
       case "replay_state": this.showState(); break;
-      case "result": this.events = message.events; this.describe(); break;
+      case "result": this.events = message.events; this.result = message; this.describe(); break;
       case "frame": this.showFrame(); break;
       case "error": if (!this.forces) this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", {}, message.what), h("a", { class: "button", href: "#/sessions" }, "All sessions"))); break;
       default: break;
@@ -84,6 +92,9 @@ export class ReplayPage implements Page {
 
   dispose(): void {
     this.unhook();
+    this.tissue?.dispose();
+    this.view.onclick = () => {};
+    this.view.mark([]);
     this.view.stop();
     if (this.app.session?.state === "replay") this.app.send({ type: "stop" });
     this.app.replay = null;
@@ -133,8 +144,28 @@ export class ReplayPage implements Page {
       h("span", { class: "when" }, `${event.time.toFixed(1)} s`), h("span", {}, event.text || words(event.name)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit)))));
     this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), h("ul", { class: "events long" }, ...list)));
     this.brain = scene.brain ? new BrainPanel(scene, () => this.view.redraw()) : null;
-    this.right.append(this.brain ? this.brain.element : this.forces.element, h("a", { class: "button", href: `#/result/${encodeURIComponent(this.id)}` }, "Score and reasons"));
+    this.stitches = this.result?.stitches ? new StitchList(this.result, (stitch, go) => this.showStitch(stitch, go)) : null;
+    if (this.stitches) this.right.append(this.stitches.element);
+    if (this.stitches && this.wantedStitch >= 0) this.stitches.choose(this.wantedStitch, false);
+    this.tissue?.dispose();
+    this.tissue = scene.tissue ? new TissuePanel((message) => this.app.send(message), 0, false, () => {}) : null;
+    if (this.tissue) this.right.append(this.tissue.element);
+    this.right.append(this.brain ? this.brain.element : this.forces.element);
+    this.right.append(h("a", { class: "button", href: `#/result/${encodeURIComponent(this.id)}` }, "Score and reasons"));
     this.showMarks();
+  }
+
+  /// Marks it in the field; `go` takes the replay to the moment after it was made.
+  private showStitch(stitch: number, go: boolean): void {
+    this.view.mark(this.stitches?.passesOf(stitch) ?? []);
+    const time = this.result?.stitches?.[stitch]?.time;
+    if (go && time != null && (this.app.replay?.time ?? 0) < time) this.seek(time);
+  }
+
+  /// A click on a stitch in the field chooses it.
+  private clicked(event: MouseEvent): void {
+    const stitch = this.stitches?.stitchOf(this.view.passAt(event.clientX, event.clientY)) ?? -1;
+    if (stitch >= 0) this.stitches?.choose(stitch, false);
   }
 
   private showState(): void {
@@ -173,6 +204,7 @@ export class ReplayPage implements Page {
     this.warnings.show(frame.task?.warnings ?? []);
     this.steps?.show(frame.task, frame.time);
     if (this.app.scene) this.brain?.show(frame, this.app.scene);
+    this.tissue?.show(frame);
     this.forces?.show(frame, null);
   }
 }

@@ -9,6 +9,7 @@ import { PathPlot } from "./path_plot";
 import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
 import { chartsOf, drawChart } from "./plots";
+import { factorSection, joinSection, stitchSection } from "./stitch_panel";
 
 export class ResultPage implements Page {
   readonly title = "Result";
@@ -56,6 +57,7 @@ export class ResultPage implements Page {
       h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${clock(result.seconds)}`)), verdict, total,
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
+      h("div", { class: "stitchgrid" }, stitchSection(result, id), this.scaleCard(result, id), joinSection(result.leak), factorSection(result.thrombosis_factors)),
       this.curves(result));
     const map = pressureMapPanel(result.pressure_map);
     if (map) this.element.insertBefore(map, this.element.lastElementChild);
@@ -84,6 +86,18 @@ export class ResultPage implements Page {
     const pull = knot.security_newton === null ? (this.app.session?.knot_test != null && !this.id ? "Being pulled; what it holds follows." : "Not pulled.") : knot.held ? `Held: pulled up to ${milliNewton(knot.security_newton)} without slipping.` : `Slipped at ${milliNewton(knot.security_newton)}.`;
     return h("section", { class: "panel knot" }, h("h2", {}, "Knot"), knotPicture(knot.class, title, false), h("p", { class: "big" }, title),
       h("p", { class: knot.held || knot.security_newton === null ? "" : "alarm" }, knot.held ? icon.pass() : knot.security_newton === null ? icon.info() : icon.warn(), " ", pull));
+  }
+
+  /// What the simulator estimates of the task's rating scale, and the way to a rater's form.
+  private scaleCard(result: Result, id: string | null): HTMLElement | null {
+    const { scale } = result;
+    if (!scale) return null;
+    const known = scale.items.filter((item) => item.estimate !== null), sum = known.reduce((total, item) => total + (item.estimate ?? 0), 0);
+    const rows = scale.items.map((item) => h("tr", {}, h("th", { scope: "row" }, item.title), h("td", { class: "number" }, item.estimate === null ? "–" : `${item.estimate} / ${scale.most}`), h("td", { class: "quiet" }, item.why)));
+    return h("section", { class: "panel scale", "aria-labelledby": "scale-title" }, h("h2", { id: "scale-title" }, scale.title),
+      h("p", { class: "alarm" }, `${scale.label.charAt(0).toUpperCase()}${scale.label.slice(1)}: ${sum} of ${known.length * scale.most} points of the items that can be estimated; ${scale.items.length - known.length} of ${scale.items.length} items are left to a rater.`),
+      h("table", {}, h("thead", {}, h("tr", {}, ...["Item", "Estimate", "Rests on"].map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...rows)), h("p", { class: "quiet" }, scale.source),
+      id ? h("p", { class: "buttons" }, h("a", { class: "button primary", href: `#/rate/${encodeURIComponent(id)}` }, "Rate"), h("a", { class: "button", href: "#/agreement" }, "Agreement")) : null);
   }
 
   private eventCard(result: Result, id: string | null): HTMLElement {

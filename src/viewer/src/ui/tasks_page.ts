@@ -76,13 +76,14 @@ export class TasksPage implements Page {
     const dial = h("input", { type: "range", name: "stiffness", min: -1, max: 1, step: 0.05, value: 0, "aria-label": "Stiffness of the brain" }), turned = h("output", {}, "as in the model");
     const stiffness = () => +(10 ** Number(dial.value)).toPrecision(2); // as many steps softer as stiffer
     dial.addEventListener("input", () => setText(turned, stiffness() === 1 ? "as in the model" : `${stiffness()} times the model's`));
+    const exam = h("input", { type: "checkbox", name: "exam" });
     const trouble = h("p", { class: "trouble", role: "alert" }, "");
     const form = h("form", { method: "dialog", onsubmit: (event: Event) => {
       event.preventDefault();
       const input = (form.querySelector("input[name=input]:checked") as HTMLInputElement | null)?.value as InputKind | undefined;
       if (!input) { setText(trouble, "Choose how the instruments are moved."); return; }
       if (!code.checkValidity()) { setText(trouble, "The code may hold letters, digits, - and _ only."); return; }
-      const sent = app.send({ type: "start", task: task.name, input, ...(code.value ? { code: code.value } : {}), ...(task.dial && stiffness() !== 1 ? { stiffness: stiffness() } : {}), ...(others ? { take_over: over.checked } : {}) });
+      const sent = app.send({ type: "start", task: task.name, input, ...(code.value ? { code: code.value } : {}), ...(task.dial && stiffness() !== 1 ? { stiffness: stiffness() } : {}), ...(exam.checked ? { exam: true } : {}), ...(others ? { take_over: over.checked } : {}) });
       if (!sent) { setText(trouble, "No connection to the trainer. Try again in a moment."); return; }
       app.result = null;
       dialog.close();
@@ -91,6 +92,7 @@ export class TasksPage implements Page {
       h("fieldset", {}, h("legend", {}, "Who moves the instruments?"), ...choices),
       h("label", { class: "line-input" }, "Trainee code (no name; may stay empty)", code),
       task.dial ? h("label", { class: "line-input" }, h("span", {}, "Stiffness of the brain: ", turned), dial) : null,
+      h("label", { class: "choice" }, exam, h("span", {}, h("strong", {}, "Exam"), h("br"), "Without hints, guides and colours on the tissue; the recording says so.")),
       others ? h("label", { class: "choice" }, over, h("span", {}, h("strong", {}, "Take over control"), h("br"), "Another browser is in control now; its task ends.")) : null,
       trouble,
       h("div", { class: "buttons" }, h("button", { type: "button", class: "quietbutton", onclick: () => dialog.close() }, "Cancel"),

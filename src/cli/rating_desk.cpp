@@ -1,0 +1,128 @@
+#include "cli/rating_desk.h"
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/agreement.h"
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kRatings = "/api/ratings/", kDocuments = "/documents/agreement/";
+
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json marks_json(const Rating& rating) {
+  Json marks = Json::object();
+  for (const ItemMark& m : rating.marks) marks[m.item] = m.points;
+  return {{"rater", rating.rater}, {"stored", rating.stored_utc}, {"marks", marks}};
+}
+
+/// The scale that a result carries; null where there is none.
+Json scale_of(const Json& result) { return result.is_object() && result.contains("scale") ? result["scale"] : Json(nullptr); }
+
+std::vector<ItemMark> marks_of(const Json& scale, const Json& given) {
+  if (!given.is_object()) throw InputError("rating", "marks", "nothing", "points for every item");
+  const int most = scale.at("most").get<int>();
+  std::vector<ItemMark> marks;
+  for (const Json& item : scale.at("items")) {
+    const auto name = item.at("name").get<std::string>();
+    const std::string expected = "a whole number from 0 to " + std::to_string(most);
+    if (!given.contains(name) || !given[name].is_number_integer()) throw InputError("rating", name, given.contains(name) ? given[name].dump().substr(0, 40) : "nothing", expected);
+    const auto points = given[name].get<std::int64_t>();
+    if (points < 0 || points > most) throw InputError("rating", name, std::to_string(points), expected);
+    marks.push_back({name, static_cast<int>(points)});
+  }
+  if (given.size() != marks.size()) throw InputError("rating", "marks", std::to_string(given.size()) + " items", "the items of the scale");
+  return marks;
+}
+
+std::vector<ItemMark> estimates_of(const Json& scale) {
+  std::vector<ItemMark> marks;
+  for (const Json& item : scale.at("items"))
+    if (item.at("estimate").is_number_integer()) marks.push_back({item.at("name").get<std::string>(), item["estimate"].get<int>()});
+  return marks;
+}
+
+}  // namespace
+
+RatingDesk::RatingDesk(const std::string& folder, std::function<std::optional<std::string>(const std::string&)> result_of) : result_of_(std::move(result_of)) {
+  try {
+    ratings_ = std::make_unique<Ratings>(folder);
+  } catch (const InputError& error) {
+    trouble_ = error.what();
+  }
+}
+
+Json RatingDesk::status(const std::string& session, const Json& result) const {
+  Json given = Json::array();
+  if (ratings_)
+    for (const Rating& r : ratings_->list(session)) given.push_back(marks_json(r));
+  return {{"session", session},
+          {"task", result.value("task", "")},
+          {"title", result.value("title", "")},
+          {"scale", scale_of(result)},
+          {"ratings", given},
+          {"trouble", trouble_}};
+}
+
+void RatingDesk::put(const std::string& session, const Json& result, const std::string& body) {
+  if (!ratings_) throw InputError("rating", "store", trouble_, "a file of ratings that can be written");
+  const Json scale = scale_of(result);
+  if (scale.is_null()) throw InputError("rating", "scale", "none", "a session of a task that has a rating scale");
+  const Json wish = Json::parse(body, nullptr, false);
+  if (!wish.is_object() || !wish.contains("rater") || !wish["rater"].is_string()) throw InputError("rating", "rater", "nothing", "the rater's code");
+  Rating r{session, result.value("task", ""), scale.at("name").get<std::string>(), wish["rater"].get<std::string>(), "", {}};
+  if (r.rater == kSimulatorCode) throw InputError("rating", "rater", r.rater, "a code that is not the simulator's");
+  r.marks = marks_of(scale, wish.contains("marks") ? wish["marks"] : Json(nullptr));
+  const bool first = ratings_->list(session).empty();
+  ratings_->put(r);
+  r.marks = estimates_of(scale);
+  r.rater = kSimulatorCode;
+  if (first && !r.marks.empty()) ratings_->put(r);
+}
+
+std::optional<std::string> RatingDesk::get(std::string_view path) {
+  if (path == "/api/agreement") {
+    const std::vector<Rating> all = ratings_ ? ratings_->list() : std::vector<Rating>();
+    Json json = agreement_json(agreements(all), all);
+    json["trouble"] = trouble_;
+    return text_of(json);
+  }
+  if (!path.starts_with(kRatings)) return std::nullopt;
+  const std::string session(path.substr(kRatings.size()));
+  const auto text = result_of_(session);
+  if (!text) return std::nullopt;
+  const Json result = Json::parse(*text, nullptr, false);
+  return text_of(status(session, result.is_object() ? result : Json::object()));
+}
+
+std::optional<std::string> RatingDesk::post(std::string_view path, const std::string& body) {
+  if (!path.starts_with(kRatings)) return std::nullopt;
+  const std::string session(path.substr(kRatings.size()));
+  const auto text = result_of_(session);
+  if (!text) return std::nullopt;
+  try {
+    const Json result = Json::parse(*text);
+    put(session, result, body);
+    return text_of(status(session, result));
+  } catch (const InputError& error) {
+    return text_of({{"refused", error.field + ": found " + error.value + ", expected " + error.expected}});
+  } catch (const std::exception& error) {
+    return text_of({{"refused", error.what()}});
+  }
+}
+
+std::optional<Document> RatingDesk::document(std::string_view path) {
+  if (!path.starts_with(kDocuments) || !ratings_) return std::nullopt;
+  path.remove_prefix(kDocuments.size());
+  const std::vector<Rating> all = ratings_->list();
+  if (path == "agreement.csv") return Document{"text/csv; charset=utf-8", agreement_csv(agreements(all))};
+  if (path == "ratings.csv") return Document{"text/csv; charset=utf-8", ratings_csv(all)};
+  if (path == "agreement.json") return Document{"application/json", text_of(agreement_json(agreements(all), all))};
+  return std::nullopt;
+}
+
+}  // namespace filum

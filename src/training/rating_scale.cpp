@@ -1,0 +1,136 @@
+#include "training/rating_scale.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
+
+namespace filum {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+const std::vector<std::string> kMeasures = {"leak", "back-walls", "spacing-variation", "bite-widest", "bite-narrowest", "bite-inequality", "lapses"};
+
+Range range_of(const YamlNode& node, const std::string& key) {
+  const std::vector<double> ends = node.quantities(key, "-");
+  if (ends.size() != 2 || !(ends[0] <= ends[1])) node.refuse(key, "two numbers, from and to");
+  return Range::between(ends[0], ends[1]);
+}
+
+ScaleCriterion criterion_of(const YamlNode& node, int most) {
+  constexpr std::array<const char*, 5> kKeys = {"one", "two", "three", "four", "five"};
+  ScaleCriterion c;
+  c.measure = node.choice("measure", kMeasures);
+  c.title = node.text("title");
+  c.unit = node.text_or("unit", "-");
+  c.source = node.text("source");
+  for (int k = 0; k < most; ++k) {
+    const std::string key = kKeys[static_cast<std::size_t>(k)];
+    c.points.push_back(range_of(node, key));
+    if (k > 0 && (c.points[static_cast<std::size_t>(k)].low < c.points[static_cast<std::size_t>(k - 1)].low || c.points[static_cast<std::size_t>(k)].high > c.points[static_cast<std::size_t>(k - 1)].high))
+      node.refuse(key, "a range within that of fewer points");
+  }
+  return c;
+}
+
+ScaleItem item_of(const YamlNode& node, int most) {
+  ScaleItem item;
+  item.name = node.text("name");
+  item.title = node.text("title");
+  item.words = node.texts("points");
+  if (static_cast<int>(item.words.size()) != most + 1) node.refuse("points", "what 0 to " + std::to_string(most) + " points mean");
+  for (const YamlNode& one : node.items_or_none("criteria")) item.criteria.push_back(criterion_of(one, most));
+  item.rater = node.text_or("rater", "");
+  if (item.criteria.empty() == item.rater.empty()) node.refuse("rater", "either criteria, or why it is left to the rater");
+  return item;
+}
+
+double variation(const std::vector<double>& gaps) {
+  if (gaps.size() < 2) return kNaN;
+  double mean = 0.0, square = 0.0;
+  for (const double g : gaps) mean += g / static_cast<double>(gaps.size());
+  for (const double g : gaps) square += (g - mean) * (g - mean) / static_cast<double>(gaps.size());
+  return std::sqrt(square) / mean;
+}
+
+/// The most (or least) of a bite's measure over the stitches that went through both sides.
+template <class Value>
+double over_stitches(const NeedleReport& r, bool most, Value value) {
+  double found = kNaN;
+  for (const Stitch& s : r.stitches) {
+    if (std::isnan(s.bite[1])) continue;
+    const double v = value(s.bite[0], s.bite[1]);
+    found = std::isnan(found) ? v : most ? std::max(found, v) : std::min(found, v);
+  }
+  return found;
+}
+
+int points_of(const ScaleCriterion& c, double value) {
+  int points = 0;
+  for (const Range& range : c.points) points += range.contains(value) ? 1 : 0;
+  return points;
+}
+
+std::string reason(const ScaleCriterion& c, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, " %.3g%s%s", value, c.unit == "-" ? "" : " ", c.unit == "-" ? "" : c.unit.c_str());
+  return c.title + text;
+}
+
+ScaleEstimate estimate(const ScaleItem& item, const NeedleReport& report) {
+  ScaleEstimate e;
+  if (item.criteria.empty()) {
+    e.why = "left to the rater: " + item.rater;
+    return e;
+  }
+  for (const ScaleCriterion& c : item.criteria) {
+    const double value = scale_value(c.measure, report);
+    if (std::isnan(value)) return {std::nullopt, std::nullopt, "-", "left to the rater: " + c.title + " could not be measured"};
+    const int points = points_of(c, value);
+    if (e.points && points >= *e.points) continue;
+    e = {points, value, c.unit, reason(c, value)};
+  }
+  return e;
+}
+
+}  // namespace
+
+RatingScale parse_rating_scale(const YamlNode& file) {
+  if (file.text("format") != "filum-scale/1") file.refuse("format", "filum-scale/1");
+  RatingScale s;
+  s.name = file.text("name");
+  s.title = file.text("title");
+  s.source = file.text("source");
+  s.most = file.integer("most", 1, 5);
+  for (const YamlNode& node : file.items("items")) {
+    s.items.push_back(item_of(node, s.most));
+    const auto same = [&](const ScaleItem& other) { return other.name == s.items.back().name; };
+    if (std::count_if(s.items.begin(), s.items.end(), same) > 1) node.refuse("name", "a name of its own");
+  }
+  file.finish();
+  return s;
+}
+
+RatingScale load_rating_scale(const std::string& path) { return parse_rating_scale(YamlNode::load(path)); }
+
+double scale_value(const std::string& measure, const NeedleReport& r) {
+  if (!r.has_tissue) return kNaN;
+  if (measure == "leak") return r.join && r.join->sound ? 60e6 * r.join->leak : kNaN;
+  if (measure == "lapses") return static_cast<double>(r.lapses.size());
+  if (measure == "back-walls")
+    return static_cast<double>(std::count_if(r.lapses.begin(), r.lapses.end(), [](const Lapse& l) { return std::string_view(l.name) == "back-wall"; }));
+  if (measure == "spacing-variation") return variation(spacings_of(r.stitches));
+  if (measure == "bite-widest") return over_stitches(r, true, [](double a, double b) { return std::max(a, b); }) / r.thickness;
+  if (measure == "bite-narrowest") return over_stitches(r, false, [](double a, double b) { return std::min(a, b); }) / r.thickness;
+  if (measure == "bite-inequality") return over_stitches(r, true, [](double a, double b) { return std::abs(a - b) / std::max(a, b); });
+  return kNaN;
+}
+
+std::vector<ScaleEstimate> estimates(const RatingScale& scale, const NeedleReport& report) {
+  std::vector<ScaleEstimate> all;
+  for (const ScaleItem& item : scale.items) all.push_back(estimate(item, report));
+  return all;
+}
+
+}  // namespace filum

@@ -1,0 +1,131 @@
+// What was found of stitches, lapses and the join: a table for the result, a list of buttons beside the field of a replay.
+import type { Lapse, Leak, PatencyFactor, Result, Stitch } from "../messages";
+import { h } from "./dom";
+import { quantity, words } from "./format";
+import { icon } from "./pictures";
+
+const kCritical = ["back-wall"];
+const kCompass = 8; // sectors are counted from where the vessel's angle is zero
+
+/// "2.4 / 2.7": both sides of a stitch; a dash where there was no second side.
+export function both(values: readonly (number | null)[], digits: number): string {
+  return values.map((value) => (value === null ? "–" : value.toFixed(digits))).join(" / ");
+}
+
+function cell(value: number | null | undefined, factor: number, digits: number): string {
+  return value === null || value === undefined ? "–" : (factor * value).toFixed(digits);
+}
+
+export function lapseValue(lapse: Lapse): string {
+  if (lapse.value === null) return "";
+  if (lapse.unit === "thicknesses") return `${lapse.value.toFixed(1)} wall thicknesses`;
+  if (lapse.unit === "deg") return `${lapse.value.toFixed(0)}°`;
+  if (lapse.unit === "share") return `${(100 * lapse.value).toFixed(0)} % of the wall`;
+  return quantity(lapse.value, lapse.unit);
+}
+
+export function ofStitch(lapses: readonly Lapse[] | undefined, stitch: number): Lapse[] {
+  return (lapses ?? []).filter((lapse) => lapse.stitch === stitch);
+}
+
+/// Where a replay shows stitch `k`, or a moment.
+export function replayAt(id: string, time: number | null, stitch = -1): string {
+  return `#/replay/${encodeURIComponent(id)}/${(time ?? 0).toFixed(2)}${stitch >= 0 ? `/stitch-${stitch + 1}` : ""}`;
+}
+
+const kColumns: [string, string][] = [["Stitch", ""], ["Bite", "both sides, wall thicknesses"], ["Entry", "°, of the needle to the surface"], ["Exit", "°, of the needle to the surface"], ["Oblique", "° to the axis"],
+  ["Depth", "% of the wall"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Lapses", ""]];
+
+function row(stitch: Stitch, k: number, next: number | undefined, lapses: Lapse[], id: string | null): HTMLElement {
+  const name = `Stitch ${k + 1}`;
+  const found = lapses.length > 0 ? [icon.warn(), " ", lapses.map((one) => words(one.name)).join(", ")] : ["none"];
+  const numbers = [both(stitch.bite_thicknesses, 1), cell(stitch.entry_angle_deg, 1, 0), cell(stitch.exit_angle_deg, 1, 0), cell(stitch.obliquity_deg, 1, 0), cell(stitch.depth_share, 100, 0),
+    cell(next, 1000, 2), cell(stitch.tension_n, 1000, 1), cell(stitch.peak_force_n, 1000, 1), cell(stitch.torn_m, 1e6, 0)];
+  return h("tr", { "data-stitch": k }, h("th", { scope: "row" }, id ? h("a", { href: replayAt(id, stitch.time, k), title: "Show this stitch in the replay" }, name) : name),
+    ...numbers.map((text) => h("td", { class: "number" }, text)), h("td", { class: lapses.length > 0 ? "alarm" : "quiet" }, ...found));
+}
+
+/// In the order round the cut, so that "next" is the neighbour.
+function table(result: Result, stitches: readonly Stitch[], id: string | null): HTMLElement {
+  const order = stitches.map((stitch, k) => ({ stitch, k })).sort((a, b) => (a.stitch.position_m ?? 0) - (b.stitch.position_m ?? 0));
+  const rows = order.map(({ stitch, k }, at) => row(stitch, k, result.spacings_m?.[at], ofStitch(result.lapses, k), id));
+  return h("table", { class: "stitches" }, h("thead", {}, h("tr", {}, ...kColumns.map(([name, unit]) => h("th", { scope: "col" }, name, unit ? h("span", { class: "unit" }, unit) : null)))), h("tbody", {}, ...rows));
+}
+
+function lapseList(lapses: readonly Lapse[], id: string | null): HTMLElement {
+  if (lapses.length === 0) return h("p", {}, icon.pass(), " No lapse was found.");
+  return h("ul", { class: "lapses" }, ...lapses.map((lapse) => {
+    const critical = kCritical.includes(lapse.name), where = lapse.stitch < 0 ? "the whole line" : `stitch ${lapse.stitch + 1}`;
+    const text = [h("strong", {}, words(lapse.name)), critical ? h("span", { class: "tag critical" }, "critical") : null, h("span", {}, `${where}: ${lapseValue(lapse)}`)];
+    const time = lapse.time === null ? "" : `${lapse.time.toFixed(1)} s`;
+    return h("li", { "data-lapse": lapse.name }, icon.warn(), ...text, id && time ? h("a", { class: "button", href: replayAt(id, lapse.time, lapse.stitch) }, `Show the moment (${time})`) : h("span", { class: "quiet" }, time));
+  }));
+}
+
+/// Stitches and lapses of a result; nothing where the task has none.
+export function stitchSection(result: Result, id: string | null): HTMLElement | null {
+  const { stitches, lapses } = result;
+  if (!stitches) return null;
+  return h("section", { class: "panel stitchpanel", "aria-labelledby": "stitches-title" }, h("h2", { id: "stitches-title" }, "Stitch by stitch"),
+    stitches.length > 0 ? h("div", { class: "long" }, table(result, stitches, id)) : h("p", { class: "quiet" }, "No stitch was made."),
+    h("h2", {}, "Lapses"), lapseList(lapses ?? [], id), id && (lapses ?? []).length > 0 ? h("p", {}, h("a", { class: "button", href: `#/moments/${encodeURIComponent(id)}` }, "Pictures of the moments")) : null, h("p", { class: "quiet" }, `By the rules of: ${result.lapse_rules ?? "–"}. All marks are estimates of the simulator.`));
+}
+
+/// Leak by sector as bars, with narrowing and flow.
+export function joinSection(leak: Leak | undefined): HTMLElement | null {
+  if (!leak) return null;
+  const most = Math.max(1e-9, ...leak.per_sector.map((value) => value ?? 0));
+  const bars = leak.per_sector.map((value, k) => h("li", {}, h("span", { class: "sector" }, `${Math.round((360 * k) / Math.max(kCompass, leak.per_sector.length))}°`),
+    h("span", { class: "track" }, h("span", { class: "fill", style: `transform:scaleX(${((value ?? 0) / most).toFixed(3)})` })), h("span", { class: "number" }, `${cell(value, 1, 1)} ml/min, gap ${cell(leak.gap_m[k], 1e6, 0)} µm`)));
+  const narrow = leak.narrowing === null ? "not measured" : `${(100 * leak.narrowing).toFixed(0)} %`;
+  return h("section", { class: "panel joinpanel", "aria-labelledby": "join-title" }, h("h2", { id: "join-title" }, `Clamps off, held at ${cell(leak.held_mmhg, 1, 0)} mmHg`),
+    h("dl", { class: "facts" }, h("dt", {}, "Leak"), h("dd", {}, `${cell(leak.total_ml_per_min, 1, 1)} ml/min`), h("dt", {}, "Narrowing"), h("dd", {}, narrow),
+      h("dt", {}, "Flow if it were tight"), h("dd", {}, `${cell(leak.flow_if_tight_ml_per_min, 1, 1)} ml/min`), h("dt", {}, "Lumen"), h("dd", {}, leak.patent ? "patent" : "not patent"),
+      h("dt", {}, "Thread in the lumen"), h("dd", {}, `${cell(leak.thread_in_lumen_m, 1000, 2)} mm`), h("dt", {}, "Edges overlap"), h("dd", {}, `${cell(leak.edge_overlap_thicknesses, 1, 1)} wall thicknesses`)),
+    h("h3", {}, "Leak round the cut"), h("ul", { class: "sectors" }, ...bars), leak.solver_sound ? null : h("p", { class: "alarm" }, "The wall solver had trouble: take these numbers with care."));
+}
+
+/// What raises the risk of a thrombus: factors with their source, no sum and no diagnosis.
+export function factorSection(factors: readonly PatencyFactor[] | undefined): HTMLElement | null {
+  if (!factors || factors.length === 0) return null;
+  const rows = factors.map((one) => h("tr", {}, h("th", { scope: "row" }, one.title), h("td", { class: "number" }, one.unit === "-" ? cell(one.value, 1, 0) : `${cell(one.value, 1, 1)} ${one.unit === "thicknesses" ? "wall thicknesses" : one.unit}`),
+    h("td", { class: one.raised ? "alarm" : "quiet" }, one.raised ? icon.warn() : null, one.raised ? " raised" : "not raised"), h("td", { class: "quiet" }, one.source)));
+  return h("section", { class: "panel factors scale", "aria-labelledby": "factors-title" }, h("h2", { id: "factors-title" }, "Risk of a thrombus: factors"), h("p", { class: "quiet" }, "Each by itself, as the literature has it. This is no diagnosis, and the factors are not added up."),
+    h("table", {}, h("thead", {}, h("tr", {}, ...["Factor", "Here", "", "Known from"].map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...rows)));
+}
+
+/// Buttons beside the field of a replay: one for each stitch. Chosen here or in the field.
+export class StitchList {
+  readonly element: HTMLElement;
+  private readonly buttons: HTMLElement[];
+  private readonly facts = h("div", { class: "stitchfacts", role: "status", "aria-live": "polite" });
+  chosen = -1;
+
+  /// `onchoose`: the stitch, or -1 for none, and whether to go to its time.
+  constructor(private readonly result: Result, private readonly onchoose: (stitch: number, go: boolean) => void) {
+    const stitches = result.stitches ?? [];
+    this.buttons = stitches.map((_, k) => h("button", { class: "segment", "aria-pressed": "false", "data-stitch": k, onclick: () => this.choose(this.chosen === k ? -1 : k, true) },
+      `${k + 1}`, ofStitch(result.lapses, k).length > 0 ? h("span", { title: "has lapses" }, " △") : null));
+    this.element = h("section", { class: "panel stitchlist", "aria-label": "Stitches" }, h("h2", {}, "Stitches"),
+      stitches.length > 0 ? h("div", { class: "buttons", role: "group", "aria-label": "Choose a stitch" }, ...this.buttons) : h("p", { class: "quiet" }, "No stitch was made."), this.facts);
+  }
+
+  /// The stitch that a way through the tissue belongs to, -1: none.
+  stitchOf(pass: number): number { return (this.result.stitches ?? []).findIndex((one) => one.passes?.includes(pass)); }
+  passesOf(stitch: number): number[] { return (this.result.stitches?.[stitch]?.passes ?? []).filter((pass) => pass >= 0); }
+
+  choose(stitch: number, go: boolean): void {
+    const one = this.result.stitches?.[stitch];
+    this.chosen = one ? stitch : -1;
+    this.buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === this.chosen)));
+    this.facts.replaceChildren();
+    if (one) {
+      const facts: [string, string][] = [["Bites", `${both(one.bite_thicknesses, 1)} wall thicknesses`], ["Entry, exit", `${cell(one.entry_angle_deg, 1, 0)}°, ${cell(one.exit_angle_deg, 1, 0)}°`],
+        ["Oblique", `${cell(one.obliquity_deg, 1, 0)}°`], ["Depth", `${cell(one.depth_share, 100, 0)} % of the wall`], ["Tension left", `${cell(one.tension_n, 1000, 1)} mN`], ["Torn", `${cell(one.torn_m, 1e6, 0)} µm`]];
+      const lapses = ofStitch(this.result.lapses, this.chosen);
+      this.facts.append(h("h3", {}, `Stitch ${stitch + 1}`), h("dl", { class: "facts" }, ...facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])),
+        ...lapses.map((lapse) => h("p", { class: "alarm" }, icon.warn(), ` ${words(lapse.name)}: ${lapseValue(lapse)}`)));
+    }
+    this.onchoose(this.chosen, go);
+  }
+}

@@ -1,0 +1,75 @@
+#include "training/stitch_guide.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace filum {
+namespace {
+
+NeedleDescription needle() {
+  NeedleDescription n;
+  n.present = true;
+  n.bend_radius = 1.2e-3;
+  return n;
+}
+
+/// Two rings of 24 points on each stump, radius 0.5 mm, edges 0.2 mm from the middle.
+TissueDescription vessel() {
+  TissueDescription t;
+  t.lumen = true;
+  t.thickness = 0.1e-3;
+  t.radius = 0.5e-3;
+  t.axis = Vec3::UnitY();
+  t.cut_along = Vec3::UnitZ();
+  t.middle = Vec3(1e-3, 0, 2e-3);
+  t.rest.resize(3, 4 * 24);
+  for (int ring = 0; ring < 4; ++ring)
+    for (int k = 0; k < 24; ++k) {
+      const double a = std::numbers::pi * k / 12.0, y = (ring < 2 ? -1.0 : 1.0) * (ring % 2 == 0 ? 0.2e-3 : 0.4e-3);
+      t.rest.col(24 * ring + k) = t.middle + Vec3(0.5e-3 * std::sin(a), y, 0.5e-3 * std::cos(a));
+    }
+  t.triangles.push_back({0, 1, 24});
+  return t;
+}
+
+TEST(StitchGuide, StandsTwoThicknessesFromBothEdgesRoundTheVessel) {
+  const TissueDescription t = vessel();
+  const auto guides = stitch_guides(t, needle(), {});
+  ASSERT_EQ(guides.size(), 8u);
+  for (const StitchGuide& g : guides) {
+    EXPECT_NEAR((g.in.at - t.middle).dot(t.axis), -0.4e-3, 1e-9);
+    EXPECT_NEAR((g.out.at - t.middle).dot(t.axis), 0.4e-3, 1e-9);
+    EXPECT_NEAR((g.in.at - t.rest.col(g.in.vertex)).norm(), 0.0, 1e-9);
+    EXPECT_NEAR(((g.in.at - g.out.at) - (g.in.at - g.out.at).dot(t.axis) * t.axis).norm(), 0.0, 1e-9) << "not oblique";
+  }
+  EXPECT_NEAR((guides[0].in.at + guides[1].in.at - 2.0 * t.middle).dot(t.cut_along), 0.0, 1e-9) << "stays at 180 degrees";
+}
+
+TEST(StitchGuide, NeedleGoesInAtARightAngleAndDeepEnough) {
+  const TissueDescription t = vessel();
+  const StitchGuide g = stitch_guides(t, needle(), {})[0];
+  const Vec3 outward = t.cut_along;
+  double least = 1.0, depth = 0.0;
+  Vec3 direction = Vec3::Zero();
+  for (std::size_t k = 0; k + 1 < g.in.path.size(); ++k) {
+    const double height = (0.5 * (g.in.path[k] + g.in.path[k + 1]) - g.in.at).dot(outward);
+    if (std::abs(height) < least) {
+      least = std::abs(height);
+      direction = (g.in.path[k + 1] - g.in.path[k]).normalized();
+    }
+    depth = std::min(depth, (g.in.path[k + 1] - g.in.at).dot(outward));
+  }
+  EXPECT_LT(direction.dot(outward), -0.998);
+  EXPECT_NEAR(depth, -2.0 * t.thickness, 1e-9);
+  EXPECT_GT((g.out.path.back() - g.out.at).dot(outward), 0.3e-3) << "the second comes out";
+}
+
+TEST(StitchGuide, NothingWithoutTissueOrNeedle) {
+  EXPECT_TRUE(stitch_guides({}, needle(), {}).empty());
+  EXPECT_TRUE(stitch_guides(vessel(), {}, {}).empty());
+}
+
+}  // namespace
+}  // namespace filum

@@ -1,0 +1,99 @@
+import { RatePage } from "@viewer/ui/rate_page";
+import { both, joinSection, replayAt, StitchList, stitchSection } from "@viewer/ui/stitch_panel";
+import { cividis } from "@viewer/scene/palette";
+import type { App } from "@viewer/app";
+import type { Leak, Result, Stitch } from "@viewer/messages";
+import { resultOf } from "./sample_frames.mjs";
+
+const stitch = (passes: [number, number], position: number, bites: [number, number | null]): Stitch => ({ time: 12.5, passes, bite_m: [3e-4, 3e-4], bite_thicknesses: bites, entry_angle_deg: 80, exit_angle_deg: 70, obliquity_deg: 5,
+  depth_share: 1, position_m: position, tension_n: 2e-3, peak_force_n: 9e-3, torn_m: 0 });
+const result = { ...(resultOf("s 1", 30) as unknown as Result), stitches: [stitch([0, 1], 1e-3, [2.4, 2.7]), stitch([2, 3], 0, [4.6, null])], spacings_m: [1e-3],
+  lapses: [{ name: "wide-bite", stitch: 1, time: 20, value: 4.6, unit: "thicknesses" }, { name: "back-wall", stitch: 0, time: 11.25, value: 140, unit: "deg" }], lapse_rules: "Vessel" };
+
+describe("stitches of a result", () => {
+  it("stand in order along the cut, each with its bites and lapses and a way to its moment", () => {
+    const rows = [...stitchSection(result, "s 1")!.querySelectorAll("tbody tr")].map((row) => [...row.children].map((cell) => cell.textContent));
+    expect(rows.map((row) => row[0])).toEqual(["Stitch 2", "Stitch 1"]);
+    expect(rows[0][1]).toBe("4.6 / –");
+    expect(rows[0][6]).toBe("1.00");
+    expect(rows[0].at(-1)).toContain("Wide bite");
+    expect(rows[1].at(-1)).toContain("Back wall");
+    const links = [...stitchSection(result, "s 1")!.querySelectorAll(".lapses a")].map((link) => link.getAttribute("href"));
+    expect(links).toEqual(["#/replay/s%201/20.00/stitch-2", "#/replay/s%201/11.25/stitch-1"]);
+    expect(stitchSection(result, "s 1")!.querySelectorAll(".critical").length).toBe(1);
+  });
+  it("are not made up where a task has none", () => {
+    expect(stitchSection({ ...result, stitches: undefined }, "s")).toBeNull();
+    expect(stitchSection({ ...result, stitches: [], lapses: [] }, null)!.textContent).toContain("No stitch was made");
+    expect(both([null, 1], 1)).toBe("– / 1.0");
+    expect(replayAt("a/b", null)).toBe("#/replay/a%2Fb/0.00");
+  });
+  it("are chosen by button or by a way through the tissue, and can be let go again", () => {
+    const chosen: number[] = [], list = new StitchList(result, (one) => chosen.push(one));
+    const [first, second] = [...list.element.querySelectorAll("button")] as HTMLElement[];
+    second.click();
+    expect(second.getAttribute("aria-pressed")).toBe("true");
+    expect(list.element.textContent).toContain("Wide bite: 4.6 wall thicknesses");
+    expect(list.passesOf(1)).toEqual([2, 3]);
+    expect(list.stitchOf(1)).toBe(0);
+    expect(list.stitchOf(7)).toBe(-1);
+    second.click();
+    first.click();
+    expect(chosen).toEqual([1, -1, 0]);
+  });
+});
+
+it("the join shows leak, narrowing and doubt", () => {
+  const leak: Leak = { total_ml_per_min: 12.3, per_sector: [10, 2.3], gap_m: [5e-5, 1e-5], open_area_m2: 1e-8, held_mmhg: 100, narrowing: 0.2, flow_if_tight_ml_per_min: 9, patent: true, thread_in_lumen_m: 0, edge_overlap_thicknesses: 0, solver_sound: false };
+  const text = joinSection(leak)!.textContent!;
+  for (const part of ["12.3 ml/min", "20 %", "patent", "gap 50 µm", "take these numbers with care"]) expect(text).toContain(part);
+  expect(joinSection(undefined)).toBeNull();
+});
+
+describe("a rater's form", () => {
+  const item = (name: string, estimate: number | null) => ({ name, title: `Title of ${name}`, points: ["bad", "fair", "good"], estimate, value: null, unit: "-", why: `why ${name}` });
+  const scale = { name: "mars10", title: "MARS10", source: "S", label: "L", most: 2, items: [item("closure", 1), item("knots", null)] };
+  let stored: { rater: string; stored: string; marks: Record<string, number> }[] = [];
+  beforeEach(() => {
+    stored = [];
+    globalThis.fetch = (async (_path: string, init?: { method?: string; body?: string }) => {
+      if (init?.method === "POST") {
+        const { rater, marks } = JSON.parse(init.body!);
+        if (rater === "bad") return new Response(JSON.stringify({ refused: "rater: found bad, expected a code" }));
+        stored = [{ rater, stored: "2026-11-22T01:00:00Z", marks }, { rater: "simulator", stored: "2026-11-22T01:00:00Z", marks: { closure: 1 } }];
+      }
+      return new Response(JSON.stringify({ session: "s1", task: "t", title: "Join", scale, ratings: stored, trouble: "" }));
+    }) as unknown as typeof fetch;
+  });
+  const settled = () => new Promise((done) => setTimeout(done, 20));
+
+  it("hides the estimates until marks are given, then shows both", async () => {
+    const page = new RatePage({} as App, "s1");
+    await settled();
+    expect(page.element.textContent).not.toContain("why closure");
+    const form = page.element.querySelector("form")!;
+    (form.querySelector("input[name=rater]") as HTMLInputElement).value = "R1";
+    for (const name of ["closure", "knots"]) (form.querySelector(`input[name="item-${name}"][value="2"]`) as HTMLInputElement).checked = true;
+    form.dispatchEvent(new Event("submit", { cancelable: true }));
+    await settled();
+    expect(stored[0]).toMatchObject({ rater: "R1", marks: { closure: 2, knots: 2 } });
+    const rows = [...page.element.querySelectorAll(".given tbody tr")].map((row) => [...row.children].map((cell) => cell.textContent));
+    expect(rows[0].slice(0, 4)).toEqual(["Title of closure", "2", "1", "why closure"]);
+    expect(rows[1].slice(0, 3)).toEqual(["Title of knots", "2", "–"]);
+    expect(rows[2].slice(0, 3)).toEqual(["Sum", "4", "–"]);
+  });
+  it("says what was refused", async () => {
+    const page = new RatePage({} as App, "s1");
+    await settled();
+    const form = page.element.querySelector("form")!;
+    (form.querySelector("input[name=rater]") as HTMLInputElement).value = "bad";
+    form.dispatchEvent(new Event("submit", { cancelable: true }));
+    await settled();
+    expect(page.element.querySelector("[role=alert]")!.textContent).toContain("expected a code");
+  });
+});
+
+it("the palette gets lighter all the way", () => {
+  const light = Array.from({ length: 50 }, (_, k) => { const [r, g, b] = cividis(k / 49); return 0.2126 * r ** 2.2 + 0.7152 * g ** 2.2 + 0.0722 * b ** 2.2; });
+  for (let k = 1; k < light.length; ++k) expect(light[k]).toBeGreaterThan(light[k - 1]);
+});
