@@ -32,8 +32,12 @@ SurfacePoint beside(const RigidSurface& s, int triangle, const TrianglePoint& ne
   const Vec3 off = q - nearest.point;
   p.gap = p.normal.dot(off);
   const double past = (off - p.gap * p.normal).norm();
-  for (std::size_t k = 0; k < 3; ++k)
-    if (nearest.weights[static_cast<int>(k)] < 1e-9 && s.neighbours[static_cast<std::size_t>(triangle)][k] < 0) p.beyond = past;
+  for (std::size_t k = 0; k < 3; ++k) {  // a corner of the border is that of triangles with no side on it, too
+    const double weight = nearest.weights[static_cast<int>(k)];
+    const bool side = weight < 1e-9 && s.neighbours[static_cast<std::size_t>(triangle)][k] < 0;
+    const bool corner = weight > 1.0 - 1e-9 && s.on_border[static_cast<std::size_t>(s.triangles[static_cast<std::size_t>(triangle)][k])] != 0;
+    if (side || corner) p.beyond = past;
+  }
   return p;
 }
 
@@ -107,6 +111,11 @@ RigidSurface rigid_surface(Points vertices, std::vector<Triangle> triangles) {
       s.neighbours[static_cast<std::size_t>(at->second.first)][static_cast<std::size_t>(at->second.second)] = t;
     }
   }
+  s.on_border.assign(static_cast<std::size_t>(s.vertices.cols()), 0);
+  for (std::size_t t = 0; t < s.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (s.neighbours[t][k] < 0)
+        for (const std::size_t end : {(k + 1) % 3, (k + 2) % 3}) s.on_border[static_cast<std::size_t>(s.triangles[t][end])] = 1;
   for (std::size_t first = 0; first < s.triangles.size(); first += RigidSurface::kBlock) {
     const std::size_t last = std::min(s.triangles.size(), first + RigidSurface::kBlock);
     Vec3 middle = Vec3::Zero();

@@ -34,6 +34,7 @@ struct RigidSurface {
   Points vertices;                              // [m], 3 x n, frame T
   std::vector<Triangle> triangles;
   std::vector<std::array<int, 3>> neighbours;   // triangle across the side opposite to each corner, -1 border
+  std::vector<char> on_border;                  // of each vertex
   std::vector<Vec3> normals;                    // unit, of each triangle
   std::vector<Vec3> centres;                    // [m], of balls about the triangles
   std::vector<double> radii;                    // [m]

@@ -69,6 +69,24 @@ TEST(Spatula, GapAndDistanceBeyondTheBorder) {
   EXPECT_NEAR(corner.beyond, 5e-3, 1e-12);
 }
 
+// At a corner of the border that belongs to a triangle without a side on it, the distance beyond was taken for none: a node beside a
+// tapered blade was then caught as if it lay under it.
+TEST(Spatula, DistanceBeyondACornerOfTheBorderIsTheSameFromEveryTriangleAboutIt) {
+  BladeShape tapered;
+  const RigidSurface s = blade_surface(tapered, 20, 4);
+  int corners = 0;
+  for (std::size_t t = 0; t < s.triangles.size(); ++t)
+    for (const int v : s.triangles[t]) {
+      if (s.on_border[static_cast<std::size_t>(v)] == 0) continue;
+      const Vec3 at = s.vertices.col(v), out = at.x() > 0.0 ? Vec3::UnitX() : Vec3(-Vec3::UnitX());
+      const Vec3 q = at + 3e-3 * out + 1e-3 * Vec3::UnitY();
+      if ((nearest_point(s, q).point - at).norm() > 1e-12) continue;  // a side is nearer
+      EXPECT_NEAR(nearest_point(s, q, static_cast<int>(t)).beyond, 3e-3, 1e-12) << "triangle " << t << ", corner " << v;
+      ++corners;
+    }
+  EXPECT_GT(corners, 20);
+}
+
 TEST(Spatula, ImpossibleBladesAreRefused) {
   const auto refused = [](const std::function<void(BladeShape&)>& spoil) {
     BladeShape b = flat_blade();
