@@ -12,6 +12,7 @@
 #include "evidence/brain_bench.h"
 #include "evidence/name_choice.h"
 #include "evidence/pulled_knot.h"
+#include "evidence/sewn_bench.h"
 #include "evidence/stitch_bench.h"
 #include "evidence/vessel_bench.h"
 
@@ -281,6 +282,8 @@ std::vector<Bench> all_benches() {
     list.push_back({r, [run = run, timer](BenchResult& result, const TaskOpener&) { run(result, timer); }});
   for (const StitchBench& b : stitch_benches())
     list.push_back({stated(b.name, 0, 0), [b, timer](BenchResult& r, const TaskOpener& open) { run_stitch_bench(b, r, timer, open); }});
+  for (const int n : kSewn)
+    list.push_back({stated(("stitches-" + std::to_string(n)).c_str(), 0, 1000), [n, timer](BenchResult& r, const TaskOpener& open) { run_sewn_bench(n, r, timer, open); }});
   list.push_back({stated("classroom", 10800, 500), bench_classroom});
   list.back().stated.dt_ms = 10.0;
   return list;

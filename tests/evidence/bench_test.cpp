@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "evidence/sewn_bench.h"
 
 namespace filum {
 namespace {
@@ -58,6 +59,25 @@ TEST(Bench, ATaskIsTimedUntilItsHandsAreDone) {
   bool observes = false;
   for (const auto& [name, ms] : r.stages) observes = observes || name == "observation";
   EXPECT_TRUE(observes);
+}
+
+/// Sewn by construction: each track holds the thread where it was laid, still does half a second later, and nothing was torn.
+TEST(Bench, EightStitchesByConstructionHold) {
+  const auto [model, state] = sewn_stumps(load_model(FILUM_SOURCE_DIR, "vessel-stitch"), 8);
+  World world(model);
+  world.restore(state);
+  ASSERT_EQ(world.state().tissue.tracks.n, 16);
+  for (int k = 0; k < 100; ++k) world.step(Inputs{});
+  const State& s = world.state();
+  for (int k = 0; k < 16; ++k) {
+    const NeedleTrack& t = s.tissue.tracks.tracks[static_cast<std::size_t>(k)];
+    EXPECT_EQ(t.n, 3) << k;
+    EXPECT_EQ(t.ended, 0) << k;
+    EXPECT_EQ(t.torn, 0.0) << k;
+    const Vec3 entry = world.observation().tissue.passes[static_cast<std::size_t>(k)].entry_W;
+    EXPECT_LT((s.thread.x.leftCols(s.thread.n).colwise() - entry).colwise().norm().minCoeff(), 0.2e-3) << "thread runs through it, " << k;
+  }
+  EXPECT_LT(s.thread.v.leftCols(s.thread.n).colwise().norm().maxCoeff(), 1.0);
 }
 
 TEST(Bench, ANameStandsForThoseThatBeginWithIt) {

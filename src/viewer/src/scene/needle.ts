@@ -136,20 +136,29 @@ export class Tissue {
   }
 }
 
+const kGuide = 0x0a3d91, kLift = 0.05; // colour; [mm]
+
 /// Bites and the needle's way for beginners: a ring where it goes in, a square where it comes out, a dotted line for its point.
 export class Guides {
   readonly group = new THREE.Group();
+  private readonly ink = new THREE.LineBasicMaterial({ color: kGuide });
+  private readonly way = new THREE.LineDashedMaterial({ color: kGuide, dashSize: 0.08, gapSize: 0.05 });
   private readonly parts: { vertex: number; group: THREE.Group }[] = [];
 
   constructor(guides: readonly Guide[], private readonly rest: readonly number[]) {
-    const ink = new THREE.LineBasicMaterial({ color: 0x0a3d91, depthTest: false, transparent: true, opacity: 0.95 });
-    const way = new THREE.LineDashedMaterial({ color: 0x0a3d91, dashSize: 0.08, gapSize: 0.05, depthTest: false, transparent: true, opacity: 0.8 });
+    const { ink, way } = this;
     const ring = outline(24, 0.1), square = outline(4, 0.12);
     for (const guide of guides) {
       for (const [place, shape] of [[guide.in, ring], [guide.out, square]] as const) {
         const group = new THREE.Group(), mark = new THREE.LineLoop(shape, ink), points: THREE.Vector3[] = [];
-        mark.position.set(place.at[0] * kMm, place.at[1] * kMm, place.at[2] * kMm);
         for (let k = 0; k + 2 < place.path.length; k += 3) points.push(new THREE.Vector3(place.path[k] * kMm, place.path[k + 1] * kMm, place.path[k + 2] * kMm));
+        mark.position.set(place.at[0] * kMm, place.at[1] * kMm, place.at[2] * kMm);
+        const outside = points[shape === ring ? 0 : points.length - 1];
+        if (outside) { // lies on the surface, clear of it
+          const outward = outside.clone().sub(mark.position).normalize();
+          mark.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), outward);
+          mark.position.addScaledVector(outward, kLift);
+        }
         const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), way);
         line.computeLineDistances();
         mark.renderOrder = line.renderOrder = 2;
@@ -160,8 +169,9 @@ export class Guides {
     }
   }
 
-  /// Each place moves with its vertex of the tissue.
-  update(state: TissueState): void {
+  /// Each place moves with its vertex of the tissue; on the colours of a scale the marks are white.
+  update(state: TissueState, coloured: boolean): void {
+    for (const material of [this.ink, this.way]) material.color.set(coloured ? 0xffffff : kGuide);
     for (const { vertex, group } of this.parts) {
       const k = 3 * vertex;
       if (vertex < 0 || k + 2 >= state.positions.length) continue;

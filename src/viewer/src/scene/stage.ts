@@ -132,7 +132,7 @@ export class Stage {
     if (frame.needle) this.needle?.update(frame.needle);
     if (frame.tissue) this.tissue?.update(frame.tissue);
     this.tissue?.colour(frame.overlay ?? null);
-    if (frame.tissue) this.guides?.update(frame.tissue);
+    if (frame.tissue) this.guides?.update(frame.tissue, frame.overlay != null);
   }
 
   /// Marks ways through the tissue until others are marked.

@@ -176,7 +176,7 @@ export class LivePage implements Page {
       else if (session.input === "device") text = "Attached instruments";
       else if (scene) text = `Active hand: ${toolTitle(scene.tools[this.pointer.hands.active]?.name ?? "")} (Tab changes${scene.tools.some((tool) => tool.kind === "scissors") ? ", X: scissors" : ""})`;
     }
-    setText(this.hand, text);
+    setText(this.hand, session?.state === "running" && session.exam ? `Exam · ${text}` : text);
   }
 
   private addEvent(event: TimedEvent): void {

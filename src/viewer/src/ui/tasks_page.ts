@@ -86,6 +86,7 @@ export class TasksPage implements Page {
       const sent = app.send({ type: "start", task: task.name, input, ...(code.value ? { code: code.value } : {}), ...(task.dial && stiffness() !== 1 ? { stiffness: stiffness() } : {}), ...(exam.checked ? { exam: true } : {}), ...(others ? { take_over: over.checked } : {}) });
       if (!sent) { setText(trouble, "No connection to the trainer. Try again in a moment."); return; }
       app.result = null;
+      app.replay = null; // one that another browser left open is over with this
       dialog.close();
       app.go("#/live");
     } },
