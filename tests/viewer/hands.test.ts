@@ -103,4 +103,11 @@ describe("hands", () => {
     const both = multiply([s, 0, 0, s], [s, s, 0, 0]); // first about x, then about z, a quarter each
     expect(both).toEqual([0.5, 0.5, 0.5, 0.5].map((v) => expect.closeTo(v)));
   });
+  it("reports a key that was tapped between two messages once", () => {
+    const hands = adopted();
+    hands.press(0, kCut, true);
+    hands.press(0, kCut, false);
+    expect(hands.message(0, 0).buttons).toBe(kCut);
+    expect(hands.message(0, 0.02).buttons).toBe(0);
+  });
 });

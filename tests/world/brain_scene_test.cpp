@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -165,6 +167,30 @@ TEST(BrainScene, BadFilesAreRefusedByName) {
   EXPECT_THROW(load_brain_scene(FILUM_SOURCE_DIR, "knot-square", ""), InputError);
   EXPECT_THROW(load_brain_scene(FILUM_SOURCE_DIR, "press-to-target", std::string(FILUM_SOURCE_DIR) + "/models/spatula/straight-10.yaml"), InputError);
   EXPECT_THROW(load_blade(std::string(FILUM_SOURCE_DIR) + "/models/brain/convexity.yaml"), InputError);
+}
+
+TEST(BrainScene, ImpossibleTissueIsRefusedByField) {
+  std::ifstream file(std::string(FILUM_SOURCE_DIR) + "/models/brain/convexity.yaml");
+  const std::string good{std::istreambuf_iterator<char>(file), {}};
+  const std::string path = testing::TempDir() + "filum_bad_brain.yaml";
+  const auto refused = [&](const std::string& from, const std::string& to) {
+    std::string bad = good;
+    const std::size_t at = bad.find(from);
+    if (at == std::string::npos) return "no " + from;
+    std::ofstream(path) << bad.replace(at, from.size(), to);
+    try {
+      load_brain_scene(FILUM_SOURCE_DIR, "press-to-target", path);
+    } catch (const InputError& e) {
+      return e.field;
+    }
+    return std::string("taken");
+  };
+  const auto names = [](const std::string& field, const char* name) { return field.find(name) != std::string::npos; };
+  EXPECT_PRED2(names, refused("poisson: { value: \"0.45\"", "poisson: { value: \"0.5\""), "poisson");
+  EXPECT_PRED2(names, refused("value: \"1040 kg/m3\"", "value: \"-1040 kg/m3\""), "density");
+  EXPECT_PRED2(names, refused("value: \"2.9 kPa\"", "value: \"nan kPa\""), "young");
+  EXPECT_PRED2(names, refused("value: \"2.9 kPa\"", "value: \"2.9 mm\""), "young");
+  EXPECT_PRED2(names, refused("reach: \"6.5 mm\"", "reach: \"-1 mm\""), "reach");
 }
 
 }  // namespace

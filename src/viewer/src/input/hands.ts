@@ -11,6 +11,7 @@ export interface Hand {
   closing: boolean; // a key or button holds the grip closing
   latched: boolean; // the grip stays when nothing holds it
   buttons: number; // 1 clutch, 2 cut, 4 next
+  tapped: number; // those pressed since the last message: a tap between two messages counts
 }
 
 export const kClutch = 1, kCut = 2, kNext = 4;
@@ -59,7 +60,7 @@ export class Hands {
       const grip = Math.max(0, 1 - open);
       this.hands.push({
         position: [...tool.device_pose.position], quaternion: [...tool.device_pose.quaternion], grip,
-        closing: false, latched: grip > 0.5, buttons: 0,
+        closing: false, latched: grip > 0.5, buttons: 0, tapped: 0,
       });
     });
     this.centre = [0, 1, 2].map((k) => this.hands.reduce((sum, hand) => sum + hand.position[k], 0) / Math.max(1, this.hands.length)) as Vec3;
@@ -144,11 +145,13 @@ export class Hands {
 
   press(index: number, button: number, down: boolean): void {
     const hand = this.hands[index];
-    if (hand) hand.buttons = down ? hand.buttons | button : hand.buttons & ~button;
+    if (!hand) return;
+    hand.buttons = down ? hand.buttons | button : hand.buttons & ~button;
+    if (down) hand.tapped |= button;
   }
 
   releaseAll(): void {
-    for (const hand of this.hands) { hand.closing = false; hand.buttons = 0; }
+    for (const hand of this.hands) { hand.closing = false; hand.buttons = hand.tapped = 0; }
   }
 
   /// Lets time pass for the grips [s].
@@ -160,10 +163,11 @@ export class Hands {
   }
 
   message(index: number, time: number): Pointer {
-    const hand = this.hands[index];
+    const hand = this.hands[index], buttons = hand.buttons | hand.tapped;
+    hand.tapped = 0;
     return {
       type: "pointer", tool: index, time, position: [...hand.position], quaternion: [...hand.quaternion], grip: hand.grip,
-      buttons: hand.buttons,
+      buttons,
     };
   }
 }

@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import type { Frame, Scene } from "../messages";
 import { FinishPass } from "./finish_pass";
-import { blurDiameter, eyeAt, fieldDiameter, kMagnificationBrain, kMagnificationStart, kTilt, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
+import { blurDiameter, eyeAt, fieldDiameter, kMagnificationBrain, kMagnificationStart, kTilt, kTiltBrain, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
 import { isSoftwareRenderer, QualityChooser } from "./quality";
 import { Stage } from "./stage";
 
@@ -45,7 +45,7 @@ export class Microscope {
     this.stage.describe(scene);
     this.optics.focus = this.stage.focusHeight;
     this.optics.centre = [...this.stage.centre];
-    this.optics.tilt = scene.brain && scene.brain.bone === null ? 0 : kTilt; // below a lobe one looks along the bone
+    this.optics.tilt = scene.brain && scene.brain.bone === null ? kTiltBrain : kTilt; // below a lobe one looks along the bone
     const start = scene.brain ? kMagnificationBrain : kMagnificationStart;
     if (start !== this.start) this.optics.magnification = this.start = start;
   }
