@@ -1,5 +1,6 @@
 #include "training/stitch_guide.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -60,8 +61,10 @@ std::vector<StitchGuide> stitch_guides(const TissueDescription& t, const NeedleD
   const double bite = 2.0 / 3.0 * rules.wide_bite * t.thickness;
   if (!t.lumen) {
     const Vec3 across = Vec3::UnitZ().cross(t.cut_along).normalized();
+    const auto along = (t.cut_along.transpose() * t.rest).eval();
+    const double spacing = std::min(kCardSpacing, (along.maxCoeff() - along.minCoeff()) / (kOnCard + 1));
     for (int k = 0; k < kOnCard; ++k) {
-      const Vec3 on_cut = t.middle + kCardSpacing * (k - kOnCard / 2) * t.cut_along + 0.5 * t.thickness * Vec3::UnitZ();
+      const Vec3 on_cut = t.middle + spacing * (k - kOnCard / 2) * t.cut_along + 0.5 * t.thickness * Vec3::UnitZ();
       guides.push_back(guide(t, needle, on_cut, Vec3::UnitZ(), across, bite));
     }
     return guides;

@@ -21,7 +21,7 @@ struct StitchGuide {
   GuidePlace in, out;
 };
 
-/// Round a vessel eight, at the stays first; on a card five, 1 mm apart. None without tissue or needle.
+/// Round a vessel eight, at the stays first; on a card five, 1 mm apart or as its width allows. None without tissue or needle.
 std::vector<StitchGuide> stitch_guides(const TissueDescription& tissue, const NeedleDescription& needle, const LapseRules& rules);
 
 }  // namespace filum

@@ -66,6 +66,23 @@ TEST(StitchGuide, NeedleGoesInAtARightAngleAndDeepEnough) {
   EXPECT_GT((g.out.path.back() - g.out.at).dot(outward), 0.3e-3) << "the second comes out";
 }
 
+TEST(StitchGuide, FiveOnACardWithinItsWidth) {
+  TissueDescription t;
+  t.thickness = 0.15e-3;
+  t.cut_along = Vec3::UnitX();
+  t.rest.resize(3, 2 * 9 * 5);
+  for (int k = 0; k < t.rest.cols(); ++k) t.rest.col(k) = Vec3(1e-3 * ((k / 10) - 4) * 0.5, (k % 2 == 0 ? -1.0 : 1.0) * (0.1e-3 + 0.5e-3 * (k / 2 % 5)), 0.075e-3);
+  t.triangles.push_back({0, 2, 4});
+  const auto guides = stitch_guides(t, needle(), {});
+  ASSERT_EQ(guides.size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_NEAR(guides[k].in.at.x(), (static_cast<double>(k) - 2.0) * 4e-3 / 6.0, 1e-9);
+    EXPECT_NEAR(guides[k].in.at.y(), -0.4e-3, 1e-9);
+    EXPECT_NEAR(guides[k].out.at.y(), 0.4e-3, 1e-9);
+    EXPECT_NEAR(guides[k].in.at.z(), 0.075e-3, 1e-9);
+  }
+}
+
 TEST(StitchGuide, NothingWithoutTissueOrNeedle) {
   EXPECT_TRUE(stitch_guides({}, needle(), {}).empty());
   EXPECT_TRUE(stitch_guides(vessel(), {}, {}).empty());
