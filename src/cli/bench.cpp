@@ -16,6 +16,7 @@
 #include "evidence/wild_hands.h"
 #include "haptics/haptic_loop.h"
 #include "world/model.h"
+#include "world/state.h"
 
 namespace filum {
 namespace {
@@ -102,11 +103,13 @@ void print_line(const BenchResult& r) {
 nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o) {
   using Json = nlohmann::ordered_json;
   const Setup setup = load_setup(o.common.root, task);
+  World world(setup.model);
+  const State first = world.state();
   WildRun worst;
   std::uint64_t steps = 0;
   Json faults = Json::array();
   for (int seed = 1; seed <= o.wild; ++seed) {
-    const WildRun run = run_wild(setup.model, static_cast<std::uint64_t>(seed), static_cast<int>(std::lround(o.wild_seconds / setup.model->description.dt)));
+    const WildRun run = run_wild(world, first, static_cast<std::uint64_t>(seed), static_cast<int>(std::lround(o.wild_seconds / setup.model->description.dt)));
     if (!run.fault.empty()) faults.push_back({{"seed", seed}, {"step", run.steps}, {"fault", run.fault}});
     steps += run.steps;
     worst.fastest = std::max(worst.fastest, run.fastest);

@@ -89,8 +89,8 @@ Inputs WildHands::next(const Observation& o) {
   return in;
 }
 
-WildRun run_wild(const std::shared_ptr<const Model>& model, std::uint64_t seed, int steps) {
-  World world(model);
+WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps) {
+  world.restore(first);
   WildHands hands(seed, world.description());
   WildRun run;
   run.seed = seed;

@@ -5,7 +5,6 @@
 // needle joined, strands not through each other. Test: wild_hands_test; `filum bench --wild`.
 
 #include <array>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -51,7 +50,7 @@ struct WildRun {
   int apart = 0;              // most steps on end in which thread and needle stood apart; each of them reported trouble
 };
 
-/// One run from the start of the scene; ends at the first fault.
-WildRun run_wild(const std::shared_ptr<const Model>& model, std::uint64_t seed, int steps);
+/// One run from `first`, a state of this world; ends at the first fault.
+WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps);
 
 }  // namespace filum
