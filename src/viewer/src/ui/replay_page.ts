@@ -37,6 +37,7 @@ export class ReplayPage implements Page {
   private result: Result | null = null;
   private events: TimedEvent[] = [];
   private lastPanels = 0;
+  private later = 0; // timer of panels that wait
   private lastSeek = 0;
   private dragging = false;
   private wanted: number | null; // [s], where the address of the page asks to go
@@ -91,6 +92,7 @@ export class ReplayPage implements Page {
   }
 
   dispose(): void {
+    window.clearTimeout(this.later);
     this.unhook();
     this.tissue?.dispose();
     this.view.onclick = () => {};
@@ -199,7 +201,12 @@ export class ReplayPage implements Page {
   private showFrame(): void {
     const { frame } = this.app;
     const now = performance.now();
-    if (!frame || now - this.lastPanels < kPanelsEvery) return;
+    if (!frame) return;
+    window.clearTimeout(this.later);
+    if (now - this.lastPanels < kPanelsEvery) { // the last frame of a jump is shown, too
+      this.later = window.setTimeout(() => this.showFrame(), kPanelsEvery);
+      return;
+    }
     this.lastPanels = now;
     this.warnings.show(frame.task?.warnings ?? []);
     this.steps?.show(frame.task, frame.time);

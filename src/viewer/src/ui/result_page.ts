@@ -109,7 +109,8 @@ export class ResultPage implements Page {
 
   private curves(result: Result): HTMLElement {
     const section = h("div", { class: "curves" });
-    const charts = chartsOf(result.series.filter((one) => one.time.length > 1 && !(kLaboratory.includes(result.task) && /tension|thread/.test(one.name))));
+    const charts = chartsOf(result.series.filter((one) => one.time.length > 1 && !(kLaboratory.includes(result.task) && /tension|thread/.test(one.name)) &&
+      !(result.pressure_map && /tension|thread|grip/.test(one.name)))); // blades have neither jaws nor thread
     for (const data of charts) {
       const holder = h("div", { class: "chart" });
       section.append(h("section", { class: "panel" }, h("h2", {}, this.chartTitle(data.titles, data.unit)), holder));

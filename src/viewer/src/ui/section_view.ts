@@ -39,6 +39,7 @@ export class SectionView {
   private readonly legend = h("output", { class: "brainrow" }, "");
   private readonly modes: HTMLButtonElement[];
   private mode: SectionMode = "off";
+  private last: Frame | null = null;
 
   constructor(private readonly scene: Scene, private readonly redraw: () => void) {
     this.modes = kModes.map(([mode, label]) => h("button", { class: "segment", onclick: () => this.choose(mode) }, label));
@@ -55,10 +56,12 @@ export class SectionView {
     this.mode = mode;
     this.modes.forEach((button, k) => button.setAttribute("aria-pressed", String(kModes[k][0] === mode)));
     for (const one of [this.canvas, this.ramp, this.legend]) one.hidden = mode === "off";
+    if (this.last) this.show(this.last); // a replay that rests sends no other
     this.redraw();
   }
 
   show(frame: Frame): void {
+    this.last = frame;
     const values = sectionValues(this.scene, frame, this.mode), shape = this.scene.brain?.section, state = frame.brain?.section;
     if (values.length === 0 || !shape || !state) return;
     const most = values.reduce((a, b) => Math.max(a, b), 0), full = fullScale(most), unit = this.mode === "stress" ? "kPa" : "mm";
