@@ -15,6 +15,16 @@ double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_l
 
 }  // namespace
 
+void load_wall(VesselWall& wall, const WallState& w, const WallPoint& at, const RodTether& t, double dt) noexcept {
+  WallSlip slip;
+  slip.along = t.along;
+  slip.stick = t.stick;
+  slip.high = t.limit;
+  slip.low = t.one_way ? 0.0 : -t.limit;
+  slip.force = t.slid != 0.0 ? std::copysign(t.limit, t.slid) : std::clamp(-t.force.dot(t.along), slip.low, slip.high);
+  wall.add_load(w, at, -t.force - slip.force * t.along, t.stiffness + t.drag / dt * t.along * t.along.transpose(), slip);
+}
+
 NeedleTracks::NeedleTracks(TrackMaterial material, const NeedleShape& needle, const VesselWall& wall)
     : material_(std::move(material)), needle_(needle), walk_(wall) {
   uses_.reserve(kMaxTracks * kTrackKnots);
@@ -103,7 +113,7 @@ int NeedleTracks::follow(VesselWall& wall, const WallState& w, TrackState& s, co
       track.ended = 1;
     }
   }
-  take_point(wall, w, s, X_WN, on_needle, e);
+  take_point(wall, w, s, X_WN, on_needle, dt, e);
   return e.n;
 }
 
@@ -115,9 +125,7 @@ void NeedleTracks::take_knot(VesselWall& wall, const WallState& w, TrackState& s
   const double lengthwise = t.force.dot(t.along);
   knot.lateral = (t.force - lengthwise * t.along).norm();
   knot.strand -= t.slid;
-  Mat3 k = t.stiffness;
-  if (t.slid == 0.0) k += t.stick * t.along * t.along.transpose();
-  wall.add_load(w, knot.at, load, k);
+  load_wall(wall, w, knot.at, t, dt);
   track.hole = std::max(track.hole, std::max(needle_.wire_radius, track.hole) + material_.wear * knot.lateral * std::abs(t.slid));
   load_[static_cast<std::size_t>(u.track)] += load;
   s.dissipated += t.limit * std::abs(t.slid) + t.drag * t.slid * t.slid / dt;
@@ -177,15 +185,13 @@ void NeedleTracks::drop_passed(TrackState& s, Events& e) noexcept {
 }
 
 void NeedleTracks::take_point(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const std::vector<RodTether>& on_needle,
-                              Events& e) noexcept {
+                              double dt, Events& e) noexcept {
   const double L = needle_.length();
   const Vec3 tip = X_WN * needle_.point(L), along = X_WN.q * needle_.tangent(L);
   s.point.force = 0.0;
   if (point_tether_ >= 0 && s.point.kind != PointContact::Kind::none) {
     const RodTether& t = on_needle[static_cast<std::size_t>(point_tether_)];
-    Mat3 k = t.stiffness;
-    if (t.stick > 0.0 && t.slid == 0.0) k += t.stick * t.along * t.along.transpose();
-    wall.add_load(w, s.point.at, -t.force, k);
+    load_wall(wall, w, s.point.at, t, dt);
     switch (s.point.kind) {
       case PointContact::Kind::outside:
         rest_on_surface(wall, w, s, t, along, e);

@@ -49,6 +49,10 @@ struct TrackEvent {
   double value = 0.0;          // [N]
 };
 
+/// What a tethered strand does to the wall in its coming step: a spring across the strand, and along it dry friction that lets go of the wall where it
+/// lets go of the strand.
+void load_wall(VesselWall& wall, const WallState& w, const WallPoint& at, const RodTether& t, double dt) noexcept;
+
 class NeedleTracks {
  public:
   NeedleTracks(TrackMaterial material, const NeedleShape& needle, const VesselWall& wall);
@@ -80,7 +84,7 @@ class NeedleTracks {
   void hold_point(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, std::vector<RodTether>& on_needle) noexcept;
   void take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt) noexcept;
   void tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, const Vec3& load, Events& e) noexcept;
-  void take_point(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const std::vector<RodTether>& on_needle, Events& e) noexcept;
+  void take_point(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const std::vector<RodTether>& on_needle, double dt, Events& e) noexcept;
   void rest_on_surface(VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept;
   void advance(const VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& tip, const Vec3& along) noexcept;
   void break_through(const VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept;

@@ -19,32 +19,39 @@ constexpr int kShortenings = 8;
 constexpr double kQuiet = 0.1;       // of the tolerance: below this a step needs no iteration at all
 constexpr double kLonger = 4.0;      // than the step taken last: more is not tried at first
 constexpr double kBedding = 0.006;   // of the mean diagonal of the elements' matrix
+constexpr double kStick = 0.5;           // of a push's stiffness: its friction before it slips
+constexpr double kDeepPush = 20e-6;      // [m], overlap of a push beyond which friction does not grow
 constexpr double kMeetingReach = 0.5;   // of the wall's thickness
 constexpr double kMeetingShare = 0.1;   // stiffness of a node against a face, of lambda times thickness: a cube of the wall a tenth as wide as high
-constexpr double kStiff = 1.0;       // [N/m], springs above this come into the first matrix
+constexpr double kLeastStretch = 0.3, kMostStretch = 16.0;  // [-], det F and |F|^2 of a node beyond which the first matrix is only turned
 constexpr double kViolent = 0.1;     // [N], unbalanced force of a node at the first guess that is too far off to be trusted
 
 using Vector = Eigen::VectorXd;
 Eigen::Map<const Vector> flat(const Points& p) noexcept { return {p.data(), p.size()}; }
 
-/// Inner, outer, before and after: the pairs of nodes that span a node's outward and its lengthwise direction.
-std::vector<std::array<int, 4>> find_neighbours(const VesselMesh& mesh) {
-  std::vector<std::array<int, 4>> list(static_cast<std::size_t>(mesh.n_nodes()));
+/// Inner, outer, before, after, left and right: the pairs of nodes that span a node's directions outward, along and around.
+std::vector<std::array<int, 6>> find_neighbours(const VesselMesh& mesh) {
+  std::vector<std::array<int, 6>> list(static_cast<std::size_t>(mesh.n_nodes()));
   for (std::size_t i = 0; i < list.size(); ++i) list[i].fill(static_cast<int>(i));
   for (const auto& nodes : mesh.elements)
     for (std::size_t a = 0; a < 8; ++a) {
       auto& own = list[static_cast<std::size_t>(nodes[a])];
       own[a & 4 ? 0 : 1] = nodes[a ^ 4];
       own[a & 2 ? 2 : 3] = nodes[a ^ 2];
+      own[a & 1 ? 4 : 5] = nodes[a ^ 1];
     }
   return list;
 }
 
-Mat3 frame_of(const Points& x, const std::array<int, 4>& n) noexcept {
-  const Vec3 out = x.col(n[1]) - x.col(n[0]), along = x.col(n[3]) - x.col(n[2]);
+Mat3 span_of(const Points& x, const std::array<int, 6>& n) noexcept {
   Mat3 f;
-  f.col(0) = out.normalized();
-  f.col(1) = (along - along.dot(f.col(0)) * f.col(0)).normalized();
+  f << x.col(n[1]) - x.col(n[0]), x.col(n[3]) - x.col(n[2]), x.col(n[5]) - x.col(n[4]);
+  return f;
+}
+Mat3 frame_of(const Mat3& span) noexcept {
+  Mat3 f;
+  f.col(0) = span.col(0).normalized();
+  f.col(1) = (span.col(1) - span.col(1).dot(f.col(0)) * f.col(0)).normalized();
   f.col(2) = f.col(0).cross(f.col(1));
   return f.allFinite() ? f : Mat3(Mat3::Identity());
 }
@@ -89,7 +96,7 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
     for (const int i : mesh_.elements[static_cast<std::size_t>(e)]) inertia_[i] += per_volume * elements_.volume(e) / 8.0;
   held_.assign(static_cast<std::size_t>(n), 0);
   for (const int i : mesh_.held) held_[static_cast<std::size_t>(i)] = 1;
-  for (const auto& own : neighbours_) rest_frame_.push_back(frame_of(mesh_.nodes, own));
+  for (const auto& own : neighbours_) rest_span_.push_back(span_of(mesh_.nodes, own));
   factor_ = SlabFactor(mesh_.slab, first_matrix(mesh_, elements_, inertia_, held_));
   springs_ = WallSprings(factor_, mesh_);
   clamp_.resize(mesh_.edge_ring.size());
@@ -102,12 +109,12 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   }
   meetings_ = WallMeetings(mesh_, kMeetingReach * longest_move_, kMeetingShare * squeeze);
   loads_.resize(kMostLoads);
-  for (Points* p : {&x_, &target_, &residual_, &trial_x_, &trial_residual_, &push_, &trial_push_}) p->setZero(3, n);
+  for (Points* p : {&x_, &target_, &residual_, &elastic_, &trial_elastic_, &trial_x_, &trial_residual_, &push_, &trial_push_}) p->setZero(3, n);
   turn_.resize(static_cast<std::size_t>(n));
   direction_ = work_ = Vector::Zero(3 * n);
   turned_f_ = Eigen::VectorXf::Zero(3 * n);
-  pairs_.resize(static_cast<std::size_t>(options_.memory));
-  for (Pair& p : pairs_) p.s = p.y = Vector::Zero(3 * n);
+  options_.memory = std::clamp(options_.memory, 1, static_cast<int>(inverse_.size()));
+  answer_.setZero(3 * n, options_.memory);
   found_.reserve(256);
 }
 
@@ -117,6 +124,8 @@ WallState VesselWall::first_state() const {
   s.v = Points::Zero(3, s.x.cols());
   s.soundness.assign(static_cast<std::size_t>(mesh_.n_elements()), 1.0);
   s.clamp = clamp_;
+  s.history.s.setZero(3 * s.x.cols(), options_.memory);
+  s.history.y = s.history.s;
   return s;
 }
 
@@ -139,11 +148,63 @@ bool VesselWall::add_load(const WallState& state, const WallPoint& at, const Vec
   l.force = force;
   l.stiffness = stiffness;
   l.at = position(state, at);
+  l.one_sided = l.sticks = false;
+  l.slip = {};
   return true;
 }
 
+bool VesselWall::add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness, const WallSlip& slip) noexcept {
+  if (!add_load(state, at, force, stiffness)) return false;
+  loads_[static_cast<std::size_t>(n_loads_ - 1)].slip = slip;
+  return true;
+}
+
+int VesselWall::add_push(const WallState& state, const WallPoint& at, const Vec3& normal, double depth, double stiffness, double friction,
+                         const Vec3& carried) noexcept {
+  const double limit = friction * stiffness * std::clamp(depth, 0.0, kDeepPush), stick = limit > 0.0 ? kStick * stiffness : 0.0;
+  const Mat3 along = normal * normal.transpose();
+  if (!add_load(state, at, Vec3::Zero(), Mat3(stiffness * along + stick * (Mat3::Identity() - along)))) return -1;
+  Load& l = loads_[static_cast<std::size_t>(n_loads_ - 1)];
+  l.one_sided = true;
+  l.normal = normal;
+  l.depth = depth;
+  l.k = stiffness;
+  l.pushed = 0.0;
+  l.stick = stick;
+  l.limit = limit;
+  l.carried = carried - carried.dot(normal) * normal;
+  return n_loads_ - 1;
+}
+
+Vec3 VesselWall::Load::answer(const Vec3& moved, double& energy) noexcept {
+  if (!one_sided) {
+    const Vec3 spring = stiffness * moved;
+    energy -= (force - 0.5 * spring).dot(moved);
+    if (slip.stick <= 0.0) return force - spring;
+    const double pull = slip.force - slip.stick * slip.along.dot(moved), held = std::clamp(pull, slip.low, slip.high);
+    sticks = pull > slip.low && pull < slip.high;
+    energy += (pull - 0.5 * held) * held / slip.stick;
+    return force - spring + held * slip.along;
+  }
+  const double overlap = std::max(0.0, depth + normal.dot(moved));
+  pushed = k * overlap;
+  energy += 0.5 * pushed * overlap;
+  force = -pushed * normal;
+  if (limit <= 0.0) return force;
+  const Vec3 slip = moved - moved.dot(normal) * normal - carried;
+  const double length = slip.norm(), give = limit / stick;
+  energy += length < give ? 0.5 * stick * length * length : limit * (length - 0.5 * give);
+  force -= (length < give ? stick : limit / length) * slip;
+  return force;
+}
+
 void VesselWall::find_frames(const Points& x) noexcept {
-  for (std::size_t i = 0; i < turn_.size(); ++i) turn_[i] = frame_of(x, neighbours_[i]) * rest_frame_[i].transpose();
+  for (std::size_t i = 0; i < turn_.size(); ++i) {
+    const Mat3 span = span_of(x, neighbours_[i]);
+    turn_[i] = span * rest_span_[i].inverse();
+    const double J = turn_[i].determinant();
+    if (!(J > kLeastStretch && turn_[i].squaredNorm() < kMostStretch)) turn_[i] = frame_of(span) * frame_of(rest_span_[i]).transpose();
+  }
 }
 
 // The wall goes on as it went; a part whose clamp moves is first carried along as a rigid body.
@@ -153,7 +214,7 @@ void VesselWall::guess(const WallState& state) noexcept {
   x_ = state.x + h * state.v;
   for (std::size_t p = 0; p < clamp_.size(); ++p) {
     const Pose moved = clamp_[p] * state.clamp[p].inverse();
-    const bool still = moved.p.isZero(0.0) && std::abs(moved.q.w()) == 1.0;
+    const bool still = clamp_[p].p == state.clamp[p].p && clamp_[p].q.coeffs() == state.clamp[p].q.coeffs();
     for (int i = 0; i < x_.cols(); ++i) {
       if (mesh_.node_part[static_cast<std::size_t>(i)] != static_cast<int>(p)) continue;
       if (held_[static_cast<std::size_t>(i)])
@@ -174,19 +235,20 @@ double VesselWall::evaluate(const WallState& state) noexcept {
     energy += 0.5 * inertia_[i] * behind.squaredNorm();
     r.col(i) = inertia_[i] * behind;
   }
-  energy += elements_.add_forces(x, state.soundness, r);
+  trial_elastic_.setZero();
+  energy += elements_.add_forces(x, state.soundness, trial_elastic_);
   if (pressed_) {
     trial_push_.setZero();
     add_pressure_forces(mesh_, pressure_, x, trial_push_);
-    r += trial_push_;
+    trial_elastic_ += trial_push_;
   }
+  r += trial_elastic_;
   energy += meetings_.add_forces(x, r);
   for (int k = 0; k < n_loads_; ++k) {
-    const Load& l = loads_[static_cast<std::size_t>(k)];
+    Load& l = loads_[static_cast<std::size_t>(k)];
     Vec3 at = -l.at;
     for (int a = 0; a < 8; ++a) at += l.weight[a] * x.col(l.node[static_cast<std::size_t>(a)]);
-    const Vec3 spring = l.stiffness * at, f = l.force - spring;
-    energy -= (l.force - 0.5 * spring).dot(at);
+    const Vec3 f = l.answer(at, energy);
     for (int a = 0; a < 8; ++a) r.col(l.node[static_cast<std::size_t>(a)]) += l.weight[a] * f;
   }
   for (const int i : mesh_.held) r.col(i).setZero();
@@ -196,10 +258,16 @@ double VesselWall::evaluate(const WallState& state) noexcept {
 void VesselWall::gather_springs() noexcept {
   springs_.clear();
   for (int k = 0; k < n_loads_; ++k) {
-    const Load& l = loads_[static_cast<std::size_t>(k)];
-    if (l.stiffness.trace() > kStiff) springs_.add({l.node, l.weight, l.stiffness}, turn_);
+    Load& l = loads_[static_cast<std::size_t>(k)];
+    l.in_matrix = l.stiff() && springs_.add({l.node, l.weight, l.present()}, turn_);
+    l.stuck_in_matrix = l.sticks;
   }
   springs_.prepare();
+}
+
+/// Has something that stands against the wall come to touch it, or left it?
+bool VesselWall::springs_stale() const noexcept {
+  return std::any_of(loads_.begin(), loads_.begin() + n_loads_, [](const Load& l) { return l.one_sided ? l.in_matrix != l.stiff() : l.stuck_in_matrix != l.sticks; });
 }
 
 /// d = Q (P + springs)^-1 Q^T r.
@@ -212,21 +280,45 @@ void VesselWall::precondition(const Vector& r, Vector& d) noexcept {
   for (const int i : mesh_.held) d.segment<3>(3 * i).setZero();
 }
 
+/// What the pairs of earlier steps say with the springs of this one.
+void VesselWall::recall(const WallHistory& h) noexcept {
+  inverse_.fill(0.0);
+  for (int k = 0; k < h.n; ++k) {
+    const int p = (h.newest - k + options_.memory) % options_.memory;
+    const auto s = h.s.col(p);
+    auto y = answer_.col(p);
+    y = h.y.col(p);
+    for (int i = 0; i < inertia_.size(); ++i) y.segment<3>(3 * i) += inertia_[i] * s.segment<3>(3 * i);
+    for (int n = 0; n < n_loads_; ++n) {
+      const Load& l = loads_[static_cast<std::size_t>(n)];
+      if (l.one_sided && l.pushed <= 0.0) continue;
+      Vec3 at = Vec3::Zero();
+      for (int a = 0; a < 8; ++a) at += l.weight[a] * s.segment<3>(3 * l.node[static_cast<std::size_t>(a)]);
+      const Vec3 f = l.present() * at;
+      for (int a = 0; a < 8; ++a) y.segment<3>(3 * l.node[static_cast<std::size_t>(a)]) += l.weight[a] * f;
+    }
+    for (const int i : mesh_.held) y.segment<3>(3 * i).setZero();
+    const double sy = s.dot(y);
+    if (sy > 1e-10 * s.norm() * y.norm()) inverse_[static_cast<std::size_t>(p)] = 1.0 / sy;
+  }
+}
+
 /// Two-loop recursion (Nocedal & Wright, Numerical Optimization, 2006, algorithm 7.4).
-void VesselWall::direction() noexcept {
-  const int m = static_cast<int>(pairs_.size());
-  std::array<double, 16> alpha{};
+void VesselWall::direction(const WallHistory& h) noexcept {
+  std::array<double, 64> alpha{};
   work_ = flat(residual_);
-  for (int k = 0; k < n_pairs_; ++k) {
-    const Pair& p = pairs_[static_cast<std::size_t>((newest_ - k + m) % m)];
-    alpha[static_cast<std::size_t>(k)] = p.inverse * p.s.dot(work_);
-    work_ -= alpha[static_cast<std::size_t>(k)] * p.y;
+  for (int k = 0; k < h.n; ++k) {
+    const int p = (h.newest - k + options_.memory) % options_.memory;
+    const auto i = static_cast<std::size_t>(p);
+    if (inverse_[i] == 0.0) continue;
+    alpha[i] = inverse_[i] * h.s.col(p).dot(work_);
+    work_ -= alpha[i] * answer_.col(p);
   }
   precondition(work_, direction_);
-  for (int k = n_pairs_; k-- > 0;) {
-    const Pair& p = pairs_[static_cast<std::size_t>((newest_ - k + m) % m)];
-    const double beta = p.inverse * p.y.dot(direction_);
-    direction_ += (alpha[static_cast<std::size_t>(k)] - beta) * p.s;
+  for (int k = h.n; k-- > 0;) {
+    const int p = (h.newest - k + options_.memory) % options_.memory;
+    const auto i = static_cast<std::size_t>(p);
+    if (inverse_[i] != 0.0) direction_ += (alpha[i] - inverse_[i] * answer_.col(p).dot(direction_)) * h.s.col(p);
   }
 }
 
@@ -254,21 +346,21 @@ bool VesselWall::advance(const WallState& state) noexcept {
   return false;
 }
 
-void VesselWall::add_pair() noexcept {
-  const int m = static_cast<int>(pairs_.size());
-  Pair& p = pairs_[static_cast<std::size_t>((newest_ + 1) % m)];
-  p.s = flat(trial_x_) - flat(x_);
-  p.y = flat(residual_) - flat(trial_residual_);  // gradients are minus residuals
-  const double sy = p.s.dot(p.y);
-  if (!(sy > 1e-10 * p.s.norm() * p.y.norm())) return;
-  p.inverse = 1.0 / sy;
-  newest_ = (newest_ + 1) % m;
-  n_pairs_ = std::min(n_pairs_ + 1, m);
+void VesselWall::add_pair(WallHistory& h) noexcept {
+  const int p = (h.newest + 1) % options_.memory;
+  work_ = flat(trial_x_) - flat(x_);
+  auto y = answer_.col(p);
+  y = flat(residual_) - flat(trial_residual_);  // gradients are minus residuals
+  const double sy = work_.dot(y);
+  inverse_[static_cast<std::size_t>(p)] = sy > 1e-10 * work_.norm() * y.norm() ? 1.0 / sy : 0.0;
+  h.s.col(p) = work_;
+  h.y.col(p) = flat(elastic_) - flat(trial_elastic_);
+  h.newest = p;
+  h.n = std::min(h.n + 1, options_.memory);
 }
 
 WallSummary VesselWall::step(WallState& state) noexcept {
   WallSummary summary;
-  n_pairs_ = 0;
   taken_ = 1.0;
   guess(state);
   pressed_ = std::any_of(pressure_.begin(), pressure_.end(), [](double p) { return p != 0.0; });
@@ -277,6 +369,7 @@ WallSummary VesselWall::step(WallState& state) noexcept {
   if (!std::isfinite(energy_) || trial_residual_.colwise().norm().maxCoeff() > kViolent) {  // is it better to start from where it is?
     const double guessed = energy_;
     work_ = flat(trial_residual_);
+    elastic_ = trial_elastic_;
     for (int i = 0; i < x_.cols(); ++i)
       if (!held_[static_cast<std::size_t>(i)]) trial_x_.col(i) = state.x.col(i);
     energy_ = evaluate(state);
@@ -285,26 +378,40 @@ WallSummary VesselWall::step(WallState& state) noexcept {
     } else {
       energy_ = guessed;
       trial_residual_ = work_.reshaped(3, x_.cols());
+      trial_elastic_ = elastic_;
     }
   }
   const bool sound = std::isfinite(energy_);
   find_frames(x_);
   gather_springs();
   residual_ = trial_residual_;
+  elastic_ = trial_elastic_;
   push_ = trial_push_;
   while (sound) {
     summary.residual = residual_.colwise().norm().maxCoeff();
     summary.converged = summary.residual <= options_.tolerance;
     const bool settled = summary.iterations > 0 || summary.residual <= kQuiet * options_.tolerance;  // what is left creeps home
     if ((summary.converged && settled) || summary.iterations == options_.max_iterations) break;
-    direction();
-    if (!advance(state)) break;
+    if (summary.iterations == 0) recall(state.history);
+    direction(state.history);
+    if (!advance(state)) {
+      if (state.history.n > 0 && summary.iterations < options_.max_iterations) {  // what was learnt misleads: once more without
+        state.history.n = 0;
+        ++summary.iterations;
+        continue;
+      }
+      trial_x_ = x_;
+      evaluate(state);  // pushes as they are here
+      break;
+    }
     ++summary.iterations;
-    add_pair();
+    add_pair(state.history);
     energy_ = trial_energy_;  // less work of pressure: only differences from here on matter
     push_.swap(trial_push_);
     x_.swap(trial_x_);
     residual_.swap(trial_residual_);
+    elastic_.swap(trial_elastic_);
+    if (springs_stale()) gather_springs();
   }
   summary.sound = sound;
   if (sound) {

@@ -4,8 +4,12 @@
 //   find x:  M ((1 + a h)(x - x_n) - h v_n) / h^2 = f_elastic(x) + f_pressure(x) + f_loads(x),   v = (x - x_n)/h
 // solved with limited-memory BFGS whose first matrix is P = M (1 + a h)/h^2 + K at rest, factored once (Liu, Bouaziz & Kavan, ACM
 // TOG 36:23, 2017; P turned node by node into the wall's present directions, so that a stump that is turned over or an
-// edge that is everted meets a matrix of its own orientation). Follower pressure on inner faces. Loads at material points are
-// f + k (x_0 - x), x_0 where the point was when the load was given: needle, thread, jaws and contact come in by them.
+// edge that is everted meets a matrix of its own orientation, and stretched with them, so that what keeps its volume does so in P, too). Pairs are
+// kept from step to step: a soft tube has bending modes that P does not know, and the next step meets them again (Morales & Nocedal, SIAM J. Optim.
+// 10:1079, 2000). What they hold is the elements' part alone; springs come anew from the loads. Follower pressure on inner faces.
+// Loads at material points are f + k (x_0 - x), x_0 where the point was when the load was given; what rubs or stands against the wall is part of the
+// step's energy with the bounds of its force (WallSlip, add_push): a wall this light goes all the way that a force kept for the step drives it, and
+// comes back in the next.
 // State is complete: same state, same loads, same next state. A step allocates nothing.
 // Neglects: viscoelasticity (a damps against the surroundings only), fluid inertia. Tests: vessel_wall_test, vessel_wall_surface_test.
 
@@ -26,8 +30,8 @@ struct WallOptions {
   double density = 1060.0;     // [kg/m3]
   double damping = 100.0;      // [1/s], against the surroundings
   double tolerance = 1e-5;     // [N], largest unbalanced force of a node
-  int max_iterations = 8;
-  int memory = 5;              // pairs of the BFGS history
+  int max_iterations = 24;
+  int memory = 20;             // pairs of the BFGS history, kept from step to step; at most 64
   bool single_precision = true;  // of the elements' forces
 };
 
@@ -36,6 +40,15 @@ struct WallSummary {
   bool sound = true;           // all numbers finite; a step that is not leaves the wall where it was, at rest
   int iterations = 0;
   double residual = 0.0;       // [N]
+};
+
+/// Dry friction of what slides through a material point, along `along`: force - stick m within [low, high] as the point moves by m. A force that stayed what
+/// it was would drag a soft wall far past what it rubs on, to be dragged back in the next step.
+struct WallSlip {
+  Vec3 along = Vec3::Zero();   // unit
+  double force = 0.0;          // [N], on the wall at the start of its step
+  double stick = 0.0;          // [N/m]
+  double low = 0.0, high = 0.0;  // [N]
 };
 
 struct WallCrossing {
@@ -61,9 +74,18 @@ class VesselWall {
   void clear_loads() noexcept { n_loads_ = 0; }
   /// Force [N] and stiffness [N/m] (symmetric positive semidefinite) at a material point. At most kMostLoads; more are refused (false).
   bool add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness = Mat3::Zero()) noexcept;
+  bool add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness, const WallSlip& slip) noexcept;
   bool add_load(const WallState& state, const WallPoint& at, const Vec3& force, double stiffness) noexcept {
     return add_load(state, at, force, Mat3(stiffness * Mat3::Identity()));
   }
+  /// A rigid thing that stands against a material point: it pushes with stiffness [N/m] times what is left of `depth` [m] (negative: still apart) as the
+  /// point gives way along -normal, never pulls. Part of the step's own equilibrium: given as a load it would be on in one step and off in the next.
+  /// With `friction` it drags the point along as it moves by `carried` [m] in the step: Coulomb, by the normal force at the step's start, creeping
+  /// (nothing is remembered). Returns a number to ask push() with, -1 if there is no room.
+  int add_push(const WallState& state, const WallPoint& at, const Vec3& normal, double depth, double stiffness, double friction = 0.0,
+               const Vec3& carried = Vec3::Zero()) noexcept;
+  /// [N], of a push on the wall at the end of the last step; 0 for -1.
+  Vec3 push(int number) const noexcept { return number < 0 ? Vec3(Vec3::Zero()) : loads_[static_cast<std::size_t>(number)].force; }
   /// Where the clamp of a part goes during the step; held nodes move with it. Stays until told otherwise.
   void place_clamp(int part, const Pose& X_WC) noexcept { clamp_[static_cast<std::size_t>(part)] = X_WC; }
   /// Transmural pressure [Pa] on the inner faces of a part. Stays until told otherwise.
@@ -86,6 +108,9 @@ class VesselWall {
   WallCrossing crossing(const WallState& state, const Vec3& a, const Vec3& b, double from = 0.0) const noexcept;
   /// Material point of the surface nearest to q within `reach`; fraction is then the distance [m], negative inside the tissue.
   WallCrossing nearest(const WallState& state, const Vec3& q, double reach) const noexcept;
+  /// Places where a ball about q of this radius meets the surface or nearly does: the feet of q on the faces and their corners, the nearest first (in a
+  /// hollow it rests on several); only the nearest if q is inside the tissue. Returns how many, at most `room`.
+  int around(const WallState& state, const Vec3& q, double radius, WallCrossing* places, int room) const noexcept;
   /// Material point of the part at q, which lies in the tissue near the point `guess` (Newton's method). found: q is inside.
   WallPoint locate(const WallState& state, const Vec3& q, const WallPoint& guess) const noexcept;
 
@@ -95,6 +120,7 @@ class VesselWall {
   const WallOptions& options() const noexcept { return options_; }
   int n_parts() const noexcept { return static_cast<int>(clamp_.size()); }
   static constexpr int kMostLoads = 1024;
+  static constexpr double kStiff = 1.0;  // [N/m], springs above this come into the first matrix
 
  private:
   struct Load {
@@ -102,20 +128,29 @@ class VesselWall {
     Eigen::Matrix<double, 8, 1> weight;
     Vec3 force, at;
     Mat3 stiffness;
-  };
-  struct Pair {
-    Eigen::VectorXd s, y;
-    double inverse = 0.0;  // 1 / (s . y)
+    bool in_matrix = false, stuck_in_matrix = false;
+    bool one_sided = false;          // then by these, and force is what came out
+    Vec3 normal;
+    double depth = 0.0, k = 0.0, pushed = 0.0;  // [m], [N/m], [N]
+    double stick = 0.0, limit = 0.0;            // [N/m], [N], of friction
+    Vec3 carried;                               // [m], by which the rigid thing moves in this step
+    WallSlip slip;
+    bool sticks = false;
+    Mat3 present() const noexcept { return sticks ? Mat3(stiffness + slip.stick * slip.along * slip.along.transpose()) : stiffness; }  // [N/m]
+    Vec3 answer(const Vec3& moved, double& energy) noexcept;  // [N], on the wall
+    bool stiff() const noexcept { return one_sided ? pushed > 0.0 : sticks || stiffness.trace() > kStiff; }
   };
 
   void gather_springs() noexcept;
+  bool springs_stale() const noexcept;
   void find_frames(const Points& x) noexcept;
   void guess(const WallState& state) noexcept;
   double evaluate(const WallState& state) noexcept;  // energy [J] and residual at trial_x_; infinite if an element is inside out
   void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& d) noexcept;
-  void direction() noexcept;
+  void recall(const WallHistory& h) noexcept;
+  void direction(const WallHistory& h) noexcept;
   bool advance(const WallState& state) noexcept;
-  void add_pair() noexcept;
+  void add_pair(WallHistory& h) noexcept;
 
   VesselMesh mesh_;
   WallOptions options_;
@@ -123,8 +158,8 @@ class VesselWall {
   double longest_move_ = 0.0;         // [m], of a node in one iteration: the wall's thickness
   Eigen::VectorXd inertia_;           // [N/m], of each node, (1 + a h) m / h^2
   std::vector<char> held_;
-  std::vector<std::array<int, 4>> neighbours_;  // of each node: inner, outer, before, after
-  std::vector<Mat3> rest_frame_;
+  std::vector<std::array<int, 6>> neighbours_;  // of each node: inner, outer, before, after, left, right
+  std::vector<Mat3> rest_span_;
   SlabFactor factor_;
   WallSprings springs_;
   WallMeetings meetings_;
@@ -135,13 +170,14 @@ class VesselWall {
   int n_loads_ = 0;
   // scratch of a step
   Points x_, target_, residual_, trial_x_, trial_residual_, push_, trial_push_;  // push: of pressure
+  Points elastic_, trial_elastic_;    // [N], of the elements and of pressure
   bool pressed_ = false;
   double energy_ = 0.0, trial_energy_ = 0.0, taken_ = 1.0;  // taken: share of the last direction
   std::vector<Mat3> turn_;
   Eigen::VectorXd direction_, work_;
   Eigen::VectorXf turned_f_;
-  std::vector<Pair> pairs_;
-  int n_pairs_ = 0, newest_ = -1;
+  Eigen::MatrixXd answer_;            // [N], of each pair: y with what springs add in this step
+  std::array<double, 64> inverse_{};  // of each pair: 1 / (s . answer), 0: not to be used
   mutable std::vector<int> found_;
 };
 

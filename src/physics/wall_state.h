@@ -13,10 +13,18 @@ struct WallPoint {
   Vec3 local = Vec3::Zero();  // xi around, eta along, zeta outward, each in [-1, 1]
 };
 
+/// What the last steps taught about the tissue's stiffness: moves s and the changes y of the elements' gradient that they made, of all numbers.
+/// The solver begins with them, so that they are part of the state.
+struct WallHistory {
+  int n = 0, newest = -1;
+  Eigen::MatrixXd s, y;           // [m], [N], a column each
+};
+
 struct WallState {
   Points x, v;                    // [m], [m/s], 3 x n, frame W
   std::vector<double> soundness;  // of each element: 1 whole, 0 gone
   std::vector<Pose> clamp;        // of each part: where its clamp was at the end of the last step
+  WallHistory history;
 };
 
 }  // namespace filum

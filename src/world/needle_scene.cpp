@@ -115,8 +115,9 @@ void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexc
   if (!summary.sound || summary.residual > kTroubleForce) say(o, "solver-trouble", -1, summary.residual, "N");
   s.needle.pull = body_.tethers.back().force;
   body_.tethers.pop_back();
-  if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments, s.force, s.torque);
+  if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments);
   if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.thread, body_.tethers, rod.tethers.list, o);
+  if (tissue_) tissue_->feel(s.force, s.torque);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {
     s.force[i] += body_.tools[i].force;
     s.torque[i] += body_.tools[i].torque;

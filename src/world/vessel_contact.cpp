@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kDeepest = 30e-6;     // [m], overlap that counts: what has gone deeper comes back as gently
 constexpr double kTrackReach = 0.3e-3;  // [m], of thread on either side of a track that is left alone
+constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
 Vec3 at_arc(const RodState& t, double arc) noexcept {
@@ -64,7 +65,7 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
     const RodTether& t = on_thread[index];
     touch.load = t.force.dot(touch.normal);
     if (touch.load <= 0.0 || in_track(tracks, whole, touch.arc)) continue;  // outside again
-    wall.add_load(w, touch.at, -t.force, t.stiffness);
+    load_wall(wall, w, touch.at, t, wall.options().dt);
     const Vec3 x = at_arc(thread, touch.arc);
     const WallCrossing near = wall.nearest(w, x, 0.1e-3);
     if (near.found && near.normal.dot(touch.normal) > 0.3) {  // slides along the same side
@@ -96,21 +97,35 @@ void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState&
 }
 
 void VesselContact::press(VesselWall& wall, const WallState& w, const std::vector<InstrumentParameters>& tools,
-                          const std::vector<InstrumentState>& states, std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept {
+                          const std::vector<InstrumentState>& states) noexcept {
+  n_pushes_ = 0;
   for (std::size_t i = 0; i < tools.size(); ++i) {
     const InstrumentBars bars = instrument_bars(tools[i], states[i].angle, 0.0);
     for (int b = 0; b < 2; ++b) {
       for (const double f : kOnJaw) {
         const Vec3 q = states[i].X_WT * (bars.a_T[b] + f * (bars.b_T[b] - bars.a_T[b]));
         const double radius = bars.r_a[b] + f * (bars.r_b[b] - bars.r_a[b]);
-        const WallCrossing near = wall.nearest(w, q, radius);
-        if (!near.found) continue;
-        const Vec3 push = stiffness * (radius - near.fraction) * near.normal;
-        wall.add_load(w, near.point, -push, Mat3(stiffness * near.normal * near.normal.transpose()));
-        force[i] += push;
-        torque[i] += (q - states[i].X_WT.p).cross(push);
+        std::array<WallCrossing, 12> places;
+        const int n = wall.around(w, q, radius + kAhead, places.data(), static_cast<int>(places.size()));
+        for (int k = 0; k < n && static_cast<std::size_t>(n_pushes_) < pushes_.size(); ++k) {
+          const WallCrossing& near = places[static_cast<std::size_t>(k)];
+          const Vec3 way = q - wall.position(w, near.point);  // at a rim or a ridge not the normal of either face
+          const Vec3 normal = near.fraction > 1e-9 ? Vec3(way / near.fraction) : near.normal;
+          const Vec3 lever = q - states[i].X_WT.p, carried = wall.options().dt * (states[i].v + states[i].w.cross(lever));
+          const int number = wall.add_push(w, near.point, normal, radius - near.fraction, stiffness, jaw_friction, carried);
+          pushes_[static_cast<std::size_t>(n_pushes_++)] = {number, static_cast<int>(i), lever};
+        }
       }
     }
+  }
+}
+
+void VesselContact::feel(const VesselWall& wall, std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept {
+  for (int k = 0; k < n_pushes_; ++k) {
+    const Push& p = pushes_[static_cast<std::size_t>(k)];
+    const Vec3 f = -wall.push(p.number);
+    force[static_cast<std::size_t>(p.tool)] += f;
+    torque[static_cast<std::size_t>(p.tool)] += p.lever.cross(f);
   }
 }
 

@@ -5,7 +5,7 @@
 // Thread: a node, or the middle of an edge, that crosses the surface inwards in a step is remembered with the place where it crossed
 // (so that it cannot come out on the far side, however fast it goes) and is pushed back out along the normal there, with Coulomb
 // friction, until it is outside. Where a track holds the thread nothing is looked for.
-// Jaws: spheres along them, k depth along the normal of the nearest face.
+// Jaws: spheres along them that push the faces they touch along their normals and drag them by friction, within the tissue's own step.
 // Neglects: thickness of the thread, thread across the rim between two samples, jaws faster than their radius a step (75 mm/s).
 // Test: vessel_contact_test.
 
@@ -24,17 +24,26 @@ class VesselContact {
 
   double stiffness = 200.0;    // [N/m], of a touch
   double friction = 0.2;       // [-], thread on tissue
+  double jaw_friction = 0.15;  // [-], steel on wet tissue
 
   void hold(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread, std::vector<RodTether>& on_thread) noexcept;
   void follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
               const std::vector<RodTether>& on_thread) noexcept;
-  /// Jaws at their present poses; adds to `force` [N] and `torque` [N m] on the tools.
-  void press(VesselWall& wall, const WallState& w, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states,
-             std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
+  /// Jaws at their present poses stand against the wall in its coming step.
+  void press(VesselWall& wall, const WallState& w, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states) noexcept;
+  /// After that step: adds to `force` [N] and `torque` [N m] on the tools.
+  void feel(const VesselWall& wall, std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
 
  private:
   void look(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, double whole, double arc, const Vec3& before, const Vec3& now) const noexcept;
 
+  struct Push {
+    int number, tool;
+    Vec3 lever;                // [m], from the tool's tip
+  };
+
+  std::array<Push, 216> pushes_{};  // up to twelve of each of three balls on each jaw of three tools
+  int n_pushes_ = 0;
   Points before_;              // [m], nodes at the start of the step
   int first_ = 0;              // of its tethers
 };

@@ -62,9 +62,8 @@ void read_stumps(const std::string& root, const YamlNode& node, Model& m, Vessel
   s.edge_grading = node.number("grading", Range::between(0.2, 5.0));
   v.layers = preset.layers;
   v.thickness = s.thickness;
-  const double dt = v.wall.dt;
-  v.wall = preset.wall;
-  v.wall.dt = dt;
+  v.wall.density = preset.wall.density;
+  v.wall.damping = preset.wall.damping;
   v.clamp.gap = node.quantity("gap", "mm", Range::not_negative());
   v.closed_gap = node.quantity_or("closed_gap", "mm", 0.0, {-1e-3, v.clamp.gap});
   v.clamp.turn = node.quantity("turn", "deg", Range::between(-std::numbers::pi, std::numbers::pi));
@@ -113,6 +112,7 @@ void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
   auto v = std::make_shared<VesselModel>();
   v->kind = node.choice("kind", {"card", "vessel"});
   v->wall.dt = m.step.dt;
+  v->wall.max_iterations = 16;  // a late step is made up for; a wall that is far from balance is not
   if (v->kind == "card")
     read_flaps(node, *v);
   else

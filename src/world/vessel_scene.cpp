@@ -101,10 +101,11 @@ void VesselScene::move_clamp(const VesselState& s) noexcept {
   for (int part = 0; part < 2; ++part) wall_.place_clamp(part, motion[static_cast<std::size_t>(part)]);
 }
 
-void VesselScene::press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states,
-                        std::vector<Vec3>& force, std::vector<Vec3>& torque) noexcept {
-  contact_.press(wall_, s.wall, tools, states, force, torque);
+void VesselScene::press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states) noexcept {
+  contact_.press(wall_, s.wall, tools, states);
 }
+
+void VesselScene::feel(std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept { contact_.feel(wall_, force, torque); }
 
 void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
                        const std::vector<RodTether>& on_thread, Observation& o) noexcept {

@@ -22,9 +22,10 @@ class VesselScene {
   /// The clamp's buttons: `next` (4) turns it over and back, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
   /// step then carries the stumps along.
   void handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept;
-  /// Jaws against the tissue; adds to the forces on them. Before step().
-  void press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states,
-             std::vector<Vec3>& force, std::vector<Vec3>& torque) noexcept;
+  /// Jaws against the tissue. Before step().
+  void press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states) noexcept;
+  /// After step(): adds to the forces on the jaws.
+  void feel(std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
   /// After needle and thread have moved: loads, punctures and tears, then the tissue's own step.
   void step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
             const std::vector<RodTether>& on_thread, Observation& o) noexcept;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -148,6 +149,39 @@ TEST(NeedleTrack, NodeRuleOfTheSeedGoesInStairsTheTrackDoesNot) {
   EXPECT_GE(changes, 3) << "the vessel's node goes over from needle node to needle node";
   EXPECT_GT(worst_rule, 0.3 * kSpacing) << "what is in the hole jumps by whole needle edges";
   EXPECT_LT(worst_track, 10e-6) << "the track slides continuously, up to the give of its friction";
+}
+
+/// A strand drawn through one point of a soft tube takes the wall along as far as its friction can hold it, and then slides: the wall does not swing.
+TEST(NeedleTrack, FrictionDragsASoftWallWithoutSwinging) {
+  TubeShape shape;
+  shape.around = 12;
+  shape.along = 6;
+  shape.length = 1.5e-3;
+  VesselWall wall(make_tube(shape), {{"wall", 1e-4, WallLaw::hooke(60e3, 0.45)}}, {});
+  WallState w = wall.first_state();
+  const WallPoint at{5 * 12 + 3, Vec3(0, 1, 0)};
+  RodTether t;
+  t.along = Vec3::UnitZ();
+  t.stick = 400.0;
+  t.limit = 0.5e-3;
+  const double start = wall.position(w, at).z(), dt = wall.options().dt, drawn = 2e-6;
+  double stretch = 0.0, before = start, back = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    stretch += drawn;  // by the strand, then by as much as the wall has followed less
+    const double elastic = std::clamp(stretch, -t.limit / t.stick, t.limit / t.stick);
+    t.slid = stretch - elastic;
+    t.force = -t.stick * elastic * t.along;
+    wall.clear_loads();
+    load_wall(wall, w, at, t, dt);
+    EXPECT_TRUE(wall.step(w).converged) << k;
+    const double now = wall.position(w, at).z();
+    stretch = elastic - (now - before);
+    back = std::min(back, now - before);
+    before = now;
+  }
+  EXPECT_GT(before - start, 5.0 * drawn) << "soft: friction drags it along";
+  EXPECT_LT(before - start, 55.0 * drawn) << "and slides in the end";
+  EXPECT_GT(back, -0.05 * drawn);
 }
 
 }  // namespace

@@ -119,6 +119,72 @@ TEST(VesselWall, PressureWidensTheLumen) {
   EXPECT_NEAR(lumen_volume(wall.mesh(), 0, state.x) / lumen_volume(wall.mesh(), 0, wall.mesh().nodes), 1.0, 2e-3);
 }
 
+WallOptions exact() {
+  WallOptions options;
+  options.single_precision = false;
+  options.tolerance = 1e-8;
+  options.max_iterations = 400;
+  return options;
+}
+
+/// A step under a dead load leaves the wall where one under something that ends with that force does.
+void expect_dead_load_is_same(const WallState& before, const WallState& after, const WallPoint& at, const Vec3& force) {
+  VesselWall wall = stump(exact());
+  WallState state = before;
+  wall.clear_loads();
+  ASSERT_TRUE(wall.add_load(state, at, force));
+  ASSERT_TRUE(wall.step(state).converged);
+  EXPECT_LT((state.x - after.x).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+/// Dry friction on a soft wall: stick while the wall follows, its limit while the wall goes the other way.
+TEST(VesselWall, FrictionLetsGoWithinTheStep) {
+  const WallPoint at{5 * 12 + 3, Vec3(0, 1, 1)};
+  WallSlip slip;
+  slip.along = Vec3(0, 0.6, 0.8);
+  slip.stick = 400.0;
+  slip.high = slip.force = 1e-4;
+  slip.low = -slip.high;
+  for (const double against : {0.0, -3e-4}) {
+    VesselWall wall = stump(exact());
+    const WallState before = wall.first_state();
+    WallState state = before;
+    wall.add_load(state, at, against * slip.along, Mat3::Zero(), slip);
+    ASSERT_TRUE(wall.step(state).converged);
+    const double moved = slip.along.dot(wall.position(state, at) - wall.position(before, at));
+    const double held = std::clamp(slip.force - slip.stick * moved, slip.low, slip.high);
+    if (against == 0.0) {
+      EXPECT_LT(held, 0.5 * slip.high) << "the soft wall follows";
+    } else {
+      EXPECT_EQ(held, slip.high);
+    }
+    expect_dead_load_is_same(before, state, at, (against + held) * slip.along);
+  }
+}
+
+/// What stands against the wall pushes with what is left of its overlap, drags by friction, and does nothing while it is apart.
+TEST(VesselWall, APushIsOneSided) {
+  const WallPoint at{5 * 12 + 3, Vec3(0, 1, 1)};
+  VesselWall wall = stump(exact());
+  const WallState before = wall.first_state();
+  const Vec3 normal = wall.directions(before, at).col(2).normalized(), side = Vec3::UnitZ();
+  WallState state = before;
+  const int number = wall.add_push(state, at, normal, 20e-6, 200.0, 0.02, 50e-6 * side);
+  ASSERT_TRUE(wall.step(state).converged);
+  const Vec3 moved = wall.position(state, at) - wall.position(before, at), push = wall.push(number);
+  EXPECT_GT(-normal.dot(moved), 1e-6);
+  EXPECT_NEAR(-normal.dot(push), 200.0 * (20e-6 + normal.dot(moved)), 1e-9);
+  EXPECT_GT(side.dot(push), 0.0);
+  EXPECT_LE((push - normal.dot(push) * normal).norm(), 0.02 * 200.0 * 20e-6 * (1.0 + 1e-9));
+  expect_dead_load_is_same(before, state, at, push);
+  wall.clear_loads();
+  state = before;
+  const int apart = wall.add_push(state, at, normal, -2e-6, 200.0, 0.02, 50e-6 * side);
+  ASSERT_TRUE(wall.step(state).converged);
+  EXPECT_EQ(wall.push(apart), Vec3::Zero());
+  EXPECT_LT((state.x - before.x).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(VesselWall, SameStateSameLoadsSameBits) {
   VesselWall one = stump(), other = stump();
   WallState a = one.first_state();
