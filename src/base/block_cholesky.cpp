@@ -11,30 +11,24 @@ namespace {
 
 constexpr int kReservePerNode = 24;  // blocks a column; a tight knot of 300 nodes uses about 8
 
-/// L^-1 of the Cholesky factor of the symmetric 4 x 4 matrix in `a` (lower half read), written over it.
+/// L^-1 of the Cholesky factor L of the symmetric 4 x 4 matrix in `a` (lower half read), written over it. Without loops, which
+/// take longer than what they repeat.
 bool invert_factor(Mat4& a) noexcept {
-  Mat4 l = Mat4::Zero();
-  for (int j = 0; j < 4; ++j) {
-    double pivot = a(j, j);
-    for (int k = 0; k < j; ++k) pivot -= l(j, k) * l(j, k);
-    if (!(pivot > 1e-13 * std::abs(a(j, j)))) return false;
-    const double d = std::sqrt(pivot);
-    l(j, j) = d;
-    for (int i = j + 1; i < 4; ++i) {
-      double s = a(i, j);
-      for (int k = 0; k < j; ++k) s -= l(i, k) * l(j, k);
-      l(i, j) = s / d;
-    }
-  }
-  a.setZero();
-  for (int j = 0; j < 4; ++j) {
-    a(j, j) = 1.0 / l(j, j);
-    for (int i = j + 1; i < 4; ++i) {
-      double s = 0.0;
-      for (int k = j; k < i; ++k) s -= l(i, k) * a(k, j);
-      a(i, j) = s / l(i, i);
-    }
-  }
+  const double p0 = a(0, 0), r0 = 1.0 / std::sqrt(p0);
+  const double l10 = a(1, 0) * r0, l20 = a(2, 0) * r0, l30 = a(3, 0) * r0;
+  const double p1 = a(1, 1) - l10 * l10, r1 = 1.0 / std::sqrt(p1);
+  const double l21 = (a(2, 1) - l20 * l10) * r1, l31 = (a(3, 1) - l30 * l10) * r1;
+  const double p2 = a(2, 2) - l20 * l20 - l21 * l21, r2 = 1.0 / std::sqrt(p2);
+  const double l32 = (a(3, 2) - l30 * l20 - l31 * l21) * r2;
+  const double p3 = a(3, 3) - l30 * l30 - l31 * l31 - l32 * l32, r3 = 1.0 / std::sqrt(p3);
+  const auto positive = [&](double pivot, int j) { return pivot > 1e-13 * std::abs(a(j, j)); };
+  if (!positive(p0, 0) || !positive(p1, 1) || !positive(p2, 2) || !positive(p3, 3)) return false;
+  const double i10 = -l10 * r0 * r1, i21 = -l21 * r1 * r2, i32 = -l32 * r2 * r3;
+  const double i20 = -(l20 * r0 + l21 * i10) * r2, i31 = -(l31 * r1 + l32 * i21) * r3;
+  a.col(0) << r0, i10, i20, -(l30 * r0 + l31 * i10 + l32 * i20) * r3;
+  a.col(1) << 0.0, r1, i21, i31;
+  a.col(2) << 0.0, 0.0, r2, i32;
+  a.col(3) << 0.0, 0.0, 0.0, r3;
   return true;
 }
 

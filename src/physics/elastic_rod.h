@@ -58,20 +58,31 @@ struct RodState {
   static RodState from_nodes(const Points& nodes, int capacity, bool naturally_straight = true);
 };
 
+/// One number, or three, for each edge or node, those of four neighbours side by side: they are computed together.
+using RodRow = Eigen::VectorXd;
+using RodRows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Geometry of one trial configuration, the inputs of energy, force and stiffness. Sized once.
 struct RodGeometry {
   explicit RodGeometry(int capacity);
-  Eigen::VectorXd length;             // [m], edge
-  Points t, d1, m1, m2;               // unit, edge: tangent, reference director, material directors
-  Points kb;                          // [-], node: curvature binormal
-  Eigen::Matrix4Xd kappa;             // [-], node: curvature about m1, m2 of the edge before, then of the edge behind
-  Eigen::VectorXd chi;                // 1 + t.t at each inner node
-  Eigen::VectorXd ref_twist, twist;   // [rad], inner node
+  RodRow length;                      // [m], edge
+  RodRows t, d1, m1, m2;              // unit, edge: tangent, reference director, material directors
+  RodRows kb;                         // [-], node: curvature binormal
+  Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor> kappa;  // [-], node: curvature about m1, m2 of the edge before, then of the edge behind
+  RodRow chi;                         // 1 + t.t at each inner node
+  RodRow ref_twist, twist;            // [rad], inner node
+  RodRows x, reference_t, reference_d1;               // [m], node; unit, edge
+  RodRow theta, reference_twist, reference_cos, reference_sin;  // [rad], edge; [rad], node
 };
 
 /// Fills `g` for positions x [m] and angles theta [rad], with reference frames transported from those of `reference`
 /// (whose tangents are those of reference.x).
 void update_geometry(const RodState& reference, const Points& x, const Eigen::VectorXd& theta, RodGeometry& g) noexcept;
+/// Its two halves, for many trial shapes of `n` nodes from one reference; and the present shape made the reference. The derivatives below are those
+/// of the energy at the reference itself: how directors are carried to a shape far from it adds a turn of second order that they leave out.
+void set_reference(const RodState& reference, RodGeometry& g) noexcept;
+void take_reference(int n, RodGeometry& g) noexcept;
+void follow_reference(int n, const Points& x, const Eigen::VectorXd& theta, RodGeometry& g) noexcept;
 
 /// U [J] of the configuration in `g`.
 double elastic_energy(const RodMaterial& m, const RodState& s, const RodGeometry& g) noexcept;

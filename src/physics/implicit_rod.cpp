@@ -59,8 +59,8 @@ RodMemory ImplicitRod::make_memory() const {
 RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {
   const StageScope stage("thread, rest");
   RodStepSummary summary;
-  soften_rest(s, o.dt);
   begin(s, memory, o);
+  soften_rest(s, o.dt);
   predict(s, memory, o);
   for (;; ++summary.iterations) {
     summary.arrived = advance_boundary(s);
@@ -74,7 +74,7 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
     summary.converged = summary.arrived && std::max(summary.residual, 0.1 * moment) < std::max(o.force_tolerance, o.relative_tolerance * force_scale(s));
     const int most = summary.arrived ? o.max_iterations : kMoreToArrive * o.max_iterations;
     if (summary.converged || summary.iterations >= most) break;
-    if (!newton_step(s, memory, o, summary)) break;
+    if (!newton_step(s, memory, o)) break;
   }
   restore_rest(s);
   summary.crowded = contact_.overflowed();
@@ -94,7 +94,7 @@ void ImplicitRod::soften_rest(RodState& s, double dt) noexcept {
   rest_twist_.head(s.n) = s.rest_twist.head(s.n);
   const double r = material.internal_friction / dt;
   if (r == 0.0) return;
-  update_geometry(s, s.x, s.theta, geometry_);
+  fit_geometry(s);
   stiffened_.EI *= 1.0 + r;
   stiffened_.GJ *= 1.0 + r;
   for (int i = 1; i + 1 < s.n; ++i) {
@@ -111,7 +111,9 @@ void ImplicitRod::restore_rest(RodState& s) noexcept {
 void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   x_.leftCols(s.n) = s.x.leftCols(s.n);
   theta_.head(s.n) = s.theta.head(s.n);
+  set_reference(s, geometry_);
   geometry_fits_ = false;
+  last_energy_ = -std::numeric_limits<double>::infinity();
   for (ObstacleBody& b : obstacles.bodies) b.X_now = b.X_start;
   grasps.locate(memory.grasps, s);
   tethers.locate(s);
@@ -134,7 +136,7 @@ void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodS
   if (length == 0.0) return;
   double fraction = free_fraction(s, memory, length);
   fit_geometry(s);
-  const double before = energy(s, x_, theta_, o);
+  const double before = energy(s, x_, theta_, o, 0.0);
   for (int k = 0; k < 2; ++k, fraction *= 0.5) {
     if (try_move(s, fraction, before, o)) break;
   }
@@ -148,8 +150,8 @@ double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, do
   if (self_contact && length > kLongestReach * material.radius) fraction = kLongestReach * material.radius / length;
   if (travelled_ + fraction * length > reach_) {
     find_near(s, memory, std::max(fraction * length, 2.0 * material.radius));
-    contact_.update(x_, material.radius, contact_material, FrictionLoad::anew);
-    obstacles.update(x_, material.radius, contact_material, FrictionLoad::anew);
+    contact_.update(x_, material.radius, contact_material, FrictionLoad::falling);
+    obstacles.update(x_, material.radius, contact_material, FrictionLoad::falling);
     fraction = contact_.overflowed() ? 0.0 : std::min(fraction, reach_ / length);
   }
   if (self_contact) fraction = std::min(fraction, contact_.free_fraction(x_, move_, material.radius));
@@ -161,13 +163,20 @@ bool ImplicitRod::try_move(const RodState& s, double fraction, double highest, c
   const StageScope stage("line search");
   x_trial_.leftCols(s.n) = x_.leftCols(s.n) + fraction * move_.leftCols(s.n).topRows<3>();
   theta_trial_.head(s.n) = theta_.head(s.n) + fraction * move_.leftCols(s.n).row(3).transpose();
-  update_geometry(s, x_trial_, theta_trial_, geometry_);
-  geometry_fits_ = energy(s, x_trial_, theta_trial_, o) <= highest;
+  follow_reference(s.n, x_trial_, theta_trial_, geometry_);
+  const double length = fraction * largest_move(move_, s.n);
+  geometry_fits_ = energy(s, x_trial_, theta_trial_, o, length) <= highest;
   if (!geometry_fits_) return false;
-  travelled_ += fraction * largest_move(move_, s.n);
+  take_reference(s.n, geometry_);
+  note_move(length);
   std::swap(x_, x_trial_);
   std::swap(theta_, theta_trial_);
   return true;
+}
+
+void ImplicitRod::note_move(double length) noexcept {
+  travelled_ += length;
+  contact_.moved(length);
 }
 
 void ImplicitRod::find_near(const RodState& s, const RodMemory& memory, double reach) noexcept {
@@ -222,6 +231,7 @@ bool ImplicitRod::advance_boundary(const RodState& s) noexcept {
   if (self_contact) fraction = contact_.free_fraction(x_, boundary_move_, material.radius);
   fraction = std::min(fraction, obstacles.free_fraction(x_, boundary_move_, material.radius));
   geometry_fits_ = false;
+  note_move(fraction * largest_move(boundary_move_, s.n));
   x_.leftCols(s.n) += fraction * boundary_move_.leftCols(s.n).topRows<3>();
   theta_.head(s.n) += fraction * boundary_move_.leftCols(s.n).row(3).transpose();
   if (fraction == 1.0) {  // exactly on target, so that rounding cannot keep the step from arriving
@@ -305,7 +315,7 @@ bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffnes
 }
 
 /// Newton step; where the exact stiffness leads nowhere, that of Gauss and Newton is tried before a last small move.
-bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o, RodStepSummary& summary) noexcept {
+bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   Stiffness kind = Stiffness::exact;
   if (!direction(s, o, kind)) return false;
   bool moved = advance(s, memory, o);
@@ -316,29 +326,34 @@ bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const 
     moved = advance(s, memory, o);
   }
   if (!moved) try_move(s, std::ldexp(1.0, -kMostHalvings), std::numeric_limits<double>::infinity(), o);  // rounding
-  summary.fallbacks += kind == Stiffness::gauss_newton;
   return true;
 }
 
+/// A move is taken if the sum falls below what it was at this iterate or at the one before (Grippo, Lampariello, Lucidi, SIAM J. Numer. Anal. 23:707,
+/// 1986, with a memory of two): the first step into a new contact, whose stiffness is not in the matrix yet, need not be cut to nothing.
 bool ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   const double slope = (gradient_.leftCols(s.n).array() * move_.leftCols(s.n).array()).sum();
   if (!(slope < 0.0)) return false;
   double fraction = free_fraction(s, memory, largest_move(move_, s.n));
   fit_geometry(s);
-  const double before = energy(s, x_, theta_, o);
+  const double before = energy(s, x_, theta_, o, 0.0), highest = std::max(before, last_energy_);
+  last_energy_ = before;
   for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5)
-    if (try_move(s, fraction, before + 1e-4 * fraction * slope, o)) return true;
+    if (try_move(s, fraction, highest + 1e-4 * fraction * slope, o)) return true;
   return false;
 }
 
-/// geometry_ of the present x_ and theta_, computed anew only if something else was looked at or moved since.
+/// geometry_ of the present x_ and theta_, and their directors as the reference of what comes; computed anew only if something else was looked
+/// at or moved since.
 void ImplicitRod::fit_geometry(const RodState& s) noexcept {
-  if (!geometry_fits_) update_geometry(s, x_, theta_, geometry_);
+  if (geometry_fits_) return;
+  follow_reference(s.n, x_, theta_, geometry_);
+  take_reference(s.n, geometry_);
   geometry_fits_ = true;
 }
 
 /// At x and theta, whose geometry is in geometry_.
-double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept {
+double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o, double ahead) noexcept {
   double u = elastic_energy(stiffened_, s, geometry_);
   const double rho = material.mass_per_length(), dt = o.dt;
   for (int i = 0; i < s.n; ++i) {
@@ -349,8 +364,8 @@ double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::Vect
     if (i + 1 < s.n) u += 0.5 * spin_inertia(material, s, i) * std::pow((theta[i] - s.theta[i]) / dt - s.theta_dot[i], 2);
     u -= boundary.load.col(i).head<3>().dot(x.col(i)) + boundary.load(3, i) * theta[i];
   }
-  if (self_contact) u += contact_.energy(x, s.x, material.radius, contact_material);
-  return u + obstacles.energy(x, s.x, material.radius, contact_material) + grasps.energy(x) + tethers.energy(x, o.dt);
+  if (self_contact) u += contact_.energy(x, s.x, material.radius, contact_material, ahead);
+  return u + obstacles.energy(x, s.x, material.radius, contact_material, ahead) + grasps.energy(x) + tethers.energy(x, o.dt);
 }
 
 void ImplicitRod::finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {

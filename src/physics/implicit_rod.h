@@ -36,7 +36,6 @@ struct RodStepSummary {
   bool arrived = true;                // bodies and prescribed nodes reached the end of their path
   bool sound = true;                  // false: a number was not finite; the state is the one before the step
   bool crowded = false;               // more pairs of edges were near than there is room for: some were left out of contact
-  int fallbacks = 0;                  // iterations that needed the Gauss-Newton stiffness
 };
 
 /// Nodes held or loaded from outside (validation problems and clamped ends); sizes 4 x capacity, rows x, y, z, theta.
@@ -88,13 +87,14 @@ class ImplicitRod {
   void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
   double force_scale(const RodState& s) const noexcept;
   bool direction(const RodState& s, const RodStepOptions& o, Stiffness& kind) noexcept;
-  bool newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o, RodStepSummary& summary) noexcept;
+  bool newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   void predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   double free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept;
   bool try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept;
   bool advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
+  void note_move(double length) noexcept;
   void fit_geometry(const RodState& s) noexcept;
-  double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) noexcept;
+  double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o, double ahead) noexcept;
   void finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept;
 
   RodContact contact_;
@@ -110,6 +110,7 @@ class ImplicitRod {
   Eigen::VectorXd rest_twist_;
   double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
   double travelled_ = 0.0;
+  double last_energy_ = 0.0;    // [J], at the iterate before, with the loads of then
   bool geometry_fits_ = false;  // geometry_ is that of x_ and theta_
 };
 

@@ -11,7 +11,7 @@
 namespace filum {
 namespace {
 
-constexpr double kJoin = 8.0;  // [radii], distance of the axes below which a pair takes part in the matrix
+constexpr double kJoin = 3.0;  // [radii], distance of the axes below which a pair takes part in the matrix
 constexpr int kChunk = 8;  // edges in one box of the broad phase
 
 struct Weights {
@@ -73,36 +73,44 @@ double conservative_advance(const Vec3 ends[4], const Vec3 moves[4], double keep
 }
 
 RodContact::RodContact(int node_capacity, int pair_capacity)
-    : low_(3, node_capacity / kChunk + 1), high_(3, node_capacity / kChunk + 1) {
+    : edge_low_(Eigen::Matrix4Xd::Zero(4, node_capacity)), edge_high_(edge_low_),
+      low_(Eigen::Matrix4Xd::Zero(4, node_capacity / kChunk + 1)), high_(low_) {
   pairs_.reserve(static_cast<std::size_t>(pair_capacity));
+  known_.reserve(static_cast<std::size_t>(pair_capacity));
   pattern_.reserve(static_cast<std::size_t>(pair_capacity));
   arc_.reserve(static_cast<std::size_t>(node_capacity));
 }
 
 void RodContact::find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept {
+  std::swap(pairs_, known_);
   pairs_.clear();
+  travelled_ = 0.0;
   overflowed_ = false;
   const int edges = s.n - 1;
   arc_.assign(1, 0.0);
   for (int j = 0; j < edges; ++j) arc_.push_back(arc_.back() + s.rest_length[j]);
+  for (int j = 0; j < edges; ++j) {
+    edge_low_.col(j).head<3>() = x.col(j).cwiseMin(x.col(j + 1));
+    edge_high_.col(j).head<3>() = x.col(j).cwiseMax(x.col(j + 1));
+  }
   const int chunks = (edges + kChunk - 1) / kChunk;
   for (int c = 0; c < chunks; ++c) {
-    const int begin = c * kChunk, count = std::min(kChunk, edges - begin) + 1;
-    low_.col(c) = x.middleCols(begin, count).rowwise().minCoeff();
-    high_.col(c) = x.middleCols(begin, count).rowwise().maxCoeff();
+    const int begin = c * kChunk, count = std::min(kChunk, edges - begin);
+    low_.col(c) = edge_low_.middleCols(begin, count).rowwise().minCoeff();
+    high_.col(c) = edge_high_.middleCols(begin, count).rowwise().maxCoeff();
   }
   const double near = 2.0 * radius + 2.0 * reach;
-  auto apart = [&](const auto& low_a, const auto& high_a, const auto& low_b, const auto& high_b) {
-    return ((low_a - high_b).array() > near).any() || ((low_b - high_a).array() > near).any();
+  const auto apart = [&](const auto& low_a, const auto& high_a, const auto& low_b, const auto& high_b) {
+    return (low_a - high_b).cwiseMax(low_b - high_a).maxCoeff() > near;
   };
   for (int a = 0; a < chunks; ++a) {
     for (int b = a; b < chunks; ++b) {
       if (apart(low_.col(a), high_.col(a), low_.col(b), high_.col(b))) continue;
       for (int i = a * kChunk; i < std::min(edges, (a + 1) * kChunk); ++i) {
-        const Vec3 low = x.col(i).cwiseMin(x.col(i + 1)), high = x.col(i).cwiseMax(x.col(i + 1));
+        if (apart(edge_low_.col(i), edge_high_.col(i), low_.col(b), high_.col(b))) continue;
         for (int j = std::max(i + 2, b * kChunk); j < std::min(edges, (b + 1) * kChunk); ++j) {
+          if (apart(edge_low_.col(i), edge_high_.col(i), edge_low_.col(j), edge_high_.col(j))) continue;
           if (arc_[j] - arc_[i + 1] < 4.0 * radius || s.alive[i] == 0 || s.alive[j] == 0) continue;
-          if (apart(low, high, x.col(j).cwiseMin(x.col(j + 1)), x.col(j).cwiseMax(x.col(j + 1)))) continue;
           const double distance = measure(x, i, j).distance;
           if (distance > near) continue;
           if (pairs_.size() == pairs_.capacity()) {
@@ -112,13 +120,23 @@ void RodContact::find_pairs(const RodState& s, const Points& x, double radius, d
           RodPair& p = pairs_.emplace_back();
           p.i = i;
           p.j = j;
+          p.distance = distance;
           p.joined = distance < kJoin * radius;
         }
       }
     }
   }
   std::sort(pairs_.begin(), pairs_.end(), [](const RodPair& p, const RodPair& q) { return std::tie(p.i, p.j) < std::tie(q.i, q.j); });
+  keep_loads();
   compare_pattern();
+}
+
+void RodContact::keep_loads() noexcept {
+  auto q = known_.begin();  // both are sorted by (i, j)
+  for (RodPair& p : pairs_) {
+    while (q != known_.end() && std::tie(q->i, q->j) < std::tie(p.i, p.j)) ++q;
+    p.load = q != known_.end() && q->i == p.i && q->j == p.j ? q->load : 0.0;
+  }
 }
 
 void RodContact::compare_pattern() noexcept {
@@ -175,10 +193,15 @@ void RodContact::remember(std::vector<ContactBristle>& memory) const noexcept {
 void RodContact::update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept {
   const StageScope stage("contact laws");
   for (RodPair& p : pairs_) {
+    if (at_least(p) > 2.0 * radius) {
+      p.force = p.load = 0.0;
+      continue;
+    }
     const SegmentPair c = measure(x, p.i, p.j);
     p.s = c.s;
     p.t = c.t;
     p.distance = c.distance;
+    p.measured_at = travelled_;
     p.normal = c.d / c.distance;
     p.force = -pair_potential(c.distance, radius, m.stiffness).slope;
     p.load = load == FrictionLoad::anew ? p.force : std::min(p.load, p.force);
@@ -186,9 +209,10 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
   }
 }
 
-double RodContact::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept {
+double RodContact::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double ahead) const noexcept {
   double u = 0.0;
   for (const RodPair& p : pairs_) {
+    if (at_least(p) - 2.0 * ahead > 2.0 * radius) continue;
     u += pair_potential(measure(x, p.i, p.j).distance, radius, m.stiffness).energy;
     if (p.force > 0.0) u += coulomb(trial_bristle(p, x, x_start), p.normal, p.load, m.friction, m.stick(m.friction, p.load)).energy;
   }
@@ -243,27 +267,31 @@ void RodContact::add_block(const RodPair& p, const Mat3& k, const ChainSlots& ch
 
 double RodContact::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept {
   double fraction = 1.0;
+  const auto keep = [&](double distance) { return std::min(1.7 * radius, 0.8 * distance); };
   for (const RodPair& p : pairs_) {
     const int node[4] = {p.i, p.i + 1, p.j, p.j + 1};
     Vec3 ends[4], moves[4];
+    for (int k = 0; k < 4; ++k) moves[k] = fraction * move.col(node[k]).head<3>();
     double fastest = 0.0;
-    for (int k = 0; k < 4; ++k) {
-      ends[k] = x.col(node[k]);
-      moves[k] = fraction * move.col(node[k]).head<3>();
-    }
     for (int a = 0; a < 2; ++a)
       for (int b = 2; b < 4; ++b) fastest = std::max(fastest, (moves[a] - moves[b]).squaredNorm());
+    const auto too_slow = [&](double distance) {  // to come nearer than allowed
+      const double room = distance - keep(distance);
+      return room >= 0.0 && fastest <= room * room;
+    };
+    if (too_slow(at_least(p))) continue;
+    for (int k = 0; k < 4; ++k) ends[k] = x.col(node[k]);
     const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
-    const double keep = std::min(1.7 * radius, 0.8 * distance);
-    if (fastest <= (distance - keep) * (distance - keep)) continue;
-    fraction *= conservative_advance(ends, moves, keep);
+    if (too_slow(distance)) continue;
+    fraction *= conservative_advance(ends, moves, keep(distance));
   }
   return fraction;
 }
 
-double RodContact::smallest_distance() const noexcept {
+double RodContact::smallest_distance(const Points& x) const noexcept {
   double d = std::numeric_limits<double>::infinity();
-  for (const RodPair& p : pairs_) d = std::min(d, p.distance);
+  for (const RodPair& p : pairs_)
+    if (at_least(p) < d) d = std::min(d, measure(x, p.i, p.j).distance);
   return d;
 }
 

@@ -33,7 +33,10 @@ PairPotential wall(double gap, double radius, const ContactMaterial& m) noexcept
 
 }  // namespace
 
-RodObstacles::RodObstacles(int touch_capacity) { touches_.reserve(static_cast<std::size_t>(touch_capacity)); }
+RodObstacles::RodObstacles(int touch_capacity) {
+  touches_.reserve(static_cast<std::size_t>(touch_capacity));
+  known_.reserve(static_cast<std::size_t>(touch_capacity));
+}
 
 void RodObstacles::collect(int edge, int obstacle, double s) noexcept {
   if (touches_.size() == touches_.capacity()) return;
@@ -44,6 +47,7 @@ void RodObstacles::collect(int edge, int obstacle, double s) noexcept {
 }
 
 void RodObstacles::find_touches(const RodState& s, const Points& x, double radius, double reach) noexcept {
+  std::swap(touches_, known_);
   touches_.clear();
   a_W_.resize(obstacles.size());
   b_W_.resize(obstacles.size());
@@ -71,6 +75,15 @@ void RodObstacles::find_touches(const RodState& s, const Points& x, double radiu
       const SegmentPair c = closest_points(x.col(j), x.col(j + 1), a_W_[k], b_W_[k]);
       if (c.distance < radius + bar_radius(o, c.t) + reach) collect(j, k, c.s);
     }
+  }
+  keep_loads();
+}
+
+void RodObstacles::keep_loads() noexcept {
+  auto q = known_.begin();  // both are sorted by edge and obstacle
+  for (ObstacleTouch& t : touches_) {
+    while (q != known_.end() && std::tie(q->edge, q->obstacle) < std::tie(t.edge, t.obstacle)) ++q;
+    t.load = q != known_.end() && q->edge == t.edge && q->obstacle == t.obstacle ? q->load : 0.0;
   }
 }
 
@@ -151,9 +164,10 @@ void RodObstacles::update(const Points& x, double radius, const ContactMaterial&
   }
 }
 
-double RodObstacles::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept {
+double RodObstacles::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double ahead) const noexcept {
   double u = 0.0;
   for (const ObstacleTouch& t : touches_) {
+    if (t.gap > ahead) continue;
     ObstacleTouch trial = t;
     measure(x, radius, trial);
     u += wall(trial.gap, radius, m).energy;

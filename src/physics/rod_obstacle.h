@@ -47,7 +47,8 @@ class RodObstacles {
   std::vector<ObstacleBody> bodies;
   std::vector<Obstacle> obstacles;
 
-  /// Collects what could touch while thread and bodies move at most `reach` [m] from where they are.
+  /// Collects what could touch while thread and bodies move at most `reach` [m] from where they are. Touches known before keep their load of
+  /// friction, others have none.
   void find_touches(const RodState& s, const Points& x, double radius, double reach) noexcept;
   void recall(const std::vector<ContactBristle>& memory) noexcept;
   void remember(std::vector<ContactBristle>& memory) const noexcept;
@@ -56,7 +57,8 @@ class RodObstacles {
   bool advance_bodies(const Points& x, double radius) noexcept;
 
   void update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept;
-  double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m) const noexcept;
+  /// Potential [J] at x, no node of which is farther than `ahead` [m] from where it was at the last update.
+  double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double ahead) const noexcept;
   void add_gradient(const Points& x, const Points& x_start, double radius, const ContactMaterial& m,
                     Eigen::Matrix4Xd& gradient) noexcept;
   void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
@@ -68,9 +70,10 @@ class RodObstacles {
  private:
   void measure(const Points& x, double radius, ObstacleTouch& touch) const noexcept;
   Vec3 trial_bristle(const ObstacleTouch& touch, const Points& x, const Points& x_start) const noexcept;
+  void keep_loads() noexcept;
   void collect(int edge, int obstacle, double s) noexcept;
 
-  std::vector<ObstacleTouch> touches_;
+  std::vector<ObstacleTouch> touches_, known_;
   std::vector<Vec3> a_W_, b_W_;  // [m], axis ends of each obstacle at X_now
 };
 

@@ -45,6 +45,11 @@ struct Lanes {
     v += b.v;
     return *this;
   }
+  Lanes& operator-=(const Lanes& b) noexcept {
+    v -= b.v;
+    return *this;
+  }
+  friend Lanes operator-(const Lanes& a) noexcept { return Lanes(-a.v); }
   friend Lanes operator+(const Lanes& a, const Lanes& b) noexcept { return Lanes(a.v + b.v); }
   friend Lanes operator-(const Lanes& a, const Lanes& b) noexcept { return Lanes(a.v - b.v); }
   friend Lanes operator*(const Lanes& a, const Lanes& b) noexcept { return Lanes(a.v * b.v); }

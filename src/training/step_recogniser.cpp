@@ -16,6 +16,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kReachAhead = 1e-3;    // [m], of the jaw tips, within which thread counts as round the tool
 constexpr double kReachBehind = 15e-3;  // [m], behind the tips
 constexpr double kReachAside = 5e-3;    // [m], from the axis
+constexpr double kHeldTurns = 0.5;      // of a strand that goes straight through the jaws that hold it
 constexpr int kLooksToLay = 3;
 constexpr int kLooksToUndo = 5;
 
@@ -79,7 +80,9 @@ void StepRecogniser::look_at_wraps(const Observation& o) {
   wrap_ = 0.0;
   wrapped_tool_ = -1;
   for (int t = 0; t < o.n_tools; ++t) {
-    const double turns = wrap_turns(o, o.tools[static_cast<std::size_t>(t)]);
+    const ToolObservation& tool = o.tools[static_cast<std::size_t>(t)];
+    double turns = wrap_turns(o, tool);
+    if (tool.grasped_edge >= 0) turns = std::copysign(std::max(std::abs(turns) - kHeldTurns, 0.0), turns);
     if (std::abs(turns) <= std::abs(wrap_)) continue;
     wrap_ = turns;
     wrapped_tool_ = t;

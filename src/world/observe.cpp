@@ -24,7 +24,7 @@ void observe_thread(const Model& model, const State& s, const ImplicitRod& rod, 
     o.contact[static_cast<std::size_t>(std::min(b.j, t.n - 1))] += b.force;
   }
   o.n_contacts = static_cast<int>(s.memory.self.size());
-  o.min_gap = rod.contact().smallest_distance() - 2.0 * model.thread.radius;
+  o.min_gap = rod.contact().smallest_distance(t.x) - 2.0 * model.thread.radius;
 }
 
 int edge_at(const RodState& t, double arc) noexcept { return arc < 0.0 ? -1 : locate_arc(t, arc).first; }

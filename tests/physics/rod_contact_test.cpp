@@ -166,7 +166,7 @@ TEST(RodContact, ForceIsMinusTheGradientOfTheEnergy) {
       Points up = x, down = x;
       up(c, i) += h;
       down(c, i) -= h;
-      const double slope = (contact.energy(up, x, kRadius, m) - contact.energy(down, x, kRadius, m)) / (2 * h);
+      const double slope = (contact.energy(up, x, kRadius, m, h) - contact.energy(down, x, kRadius, m, h)) / (2 * h);
       EXPECT_NEAR(slope, gradient(c, i), 1e-5 * gradient.norm());
     }
   }
