@@ -90,6 +90,21 @@ TEST(StepRecogniser, FollowsASquareKnotStepByStep) {
   for (std::size_t k = 1; k < w.events.size(); ++k) EXPECT_GE(w.events[k].time, w.events[k - 1].time);
 }
 
+TEST(StepRecogniser, AStrandHeldInTheJawsIsNoLoop) {
+  Watched w;
+  ToolObservation& tool = w.scene.now().tools[1];
+  w.scene.show(wound_round(tool.X_WT.p, 0.7));
+  const double turns = wrap_turns(w.scene.now(), tool);
+  ASSERT_GT(turns, 0.75) << "enough for a loop, if nothing holds the strand";
+  ASSERT_LT(turns, 1.25) << "no more than a loop less than the half turn of a held strand";
+  tool.grasped_edge = 3;
+  w.run(0.5);
+  EXPECT_EQ(w.recogniser.step(), 0);
+  tool.grasped_edge = -1;
+  w.run(0.5);
+  EXPECT_EQ(w.recogniser.step(), 1);
+}
+
 TEST(StepRecogniser, NoStepWithoutItsSign) {
   Watched w;
   w.scene.show(throws_round_post({}), 20e-3);
