@@ -158,7 +158,7 @@ void read_model(const YamlNode& file, Dataset& d, const std::string& root) {
   fs::path path = fs::path(d.folder) / d.model;
   if (!fs::is_regular_file(path)) path = fs::path(root) / "models" / (d.model + ".yaml");
   if (!fs::is_regular_file(path)) path = fs::path(root) / "models" / d.model;
-  if (!fs::is_regular_file(path)) model.refuse("file", "a model below models/, e.g. " + info(d.rig).model + ", or a path beside this file");
+  if (!fs::is_regular_file(path)) model.refuse("file", "a model below " + (fs::path(root) / "models").string() + ", e.g. " + info(d.rig).model + " (there is no such file), or a path beside experiment.yaml");
   const YamlNode values = YamlNode::load(path.string());
   for (const ParameterInfo& p : info(d.rig).baseline) {
     if (!values.has(p.name)) continue;

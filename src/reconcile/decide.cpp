@@ -118,18 +118,55 @@ bool refit_matters(const Search& search) {
   return there.chi2 - search.base().chi2 > 12.0 * static_cast<double>(fitter.free_baseline().size()) && search.material(there, search.base()) > 1.0;
 }
 
-void list_tried(const Search& search, Result& r, const Fit* taken) {
+void list_tried(const Search& search, Result& r, const Fit* best) {
+  const Fit* taken = r.verdict == "effect" ? best : nullptr;
   for (const Fit& f : search.candidates()) {
     Tried t{effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), &f == taken, ""};
     char text[200];
+    const bool rival = r.verdict == "ambiguous" && std::any_of(r.rivals.begin(), r.rivals.end(), [&](const Tried& other) { return other.effects == t.effects; });
     if (t.taken) t.why = "taken";
+    else if (rival) t.why = "a rival: not told apart";
     else if (t.evidence > -r.rules.accept_evidence) t.why = "no evidence beyond the baseline";
     else if (t.explained < r.rules.explained) std::snprintf(text, sizeof text, "explains %.0f %% of what is missing", 100 * t.explained), t.why = text;
-    else if (taken != nullptr && search.bic(f) > search.bic(*taken)) std::snprintf(text, sizeof text, "worse than the best by %.1f", search.bic(f) - search.bic(*taken)), t.why = text;
+    else if (best != nullptr && search.bic(f) > search.bic(*best)) std::snprintf(text, sizeof text, "worse than the best by %.1f", search.bic(f) - search.bic(*best)), t.why = text;
     else t.why = "further effect does not earn its place";
     if (f.at_bound) t.why += "; a parameter stands at its bound";
     r.tried.push_back(std::move(t));
   }
+}
+
+/// Where the smaller set is silent, its form cannot be to blame for what is left: the share of the larger set's gain that comes from those
+/// samples. 0 where there are too few of them, or the gain there could be chance.
+double where_silent(const Search& search, const Fit& smaller, const Fit& larger, const Rules& rules) {
+  const Fitter& fitter = search.fitter();
+  Fit without = larger;
+  for (std::size_t k = without.forms.size(); k-- > 0;)
+    if (const auto mine = effects_in(smaller); std::find(mine.begin(), mine.end(), without.forms[k]->effect) != mine.end()) {
+      without.forms.erase(without.forms.begin() + static_cast<std::ptrdiff_t>(k));
+      without.params.erase(without.params.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  if (without.forms.size() + smaller.forms.size() != larger.forms.size()) return 0.0;
+  double gain = 0.0;
+  int silent = 0, all = 0;
+  for (std::size_t i = 0; i < larger.predicted.size(); ++i) {
+    if (larger.predicted[i].empty()) continue;
+    std::vector<Eigen::VectorXd> plain;
+    fitter.residual(static_cast<int>(i), fitter.setting(without, static_cast<int>(i)), nullptr, &plain);
+    Eigen::Index row = 0;  // of the whitened residual, which has no entry for a sample that is left out
+    for (std::size_t c = 0; c < plain.size(); ++c) {
+      const double least = rules.materiality * fitter.noise().output[c].full_scale;
+      for (Eigen::Index n = 0; n < plain[c].size(); ++n) {
+        if (!std::isfinite(larger.residual[i][c][n])) continue;
+        const auto at = row++;
+        ++all;
+        if (std::abs(plain[c][n] - larger.predicted[i][c][n]) > least) continue;
+        gain += (std::pow(smaller.white[i][at], 2) - std::pow(larger.white[i][at], 2)) / search.dispersion();
+        ++silent;
+      }
+    }
+  }
+  if (silent < rules.silent_least * all || gain < rules.detect) return 0.0;
+  return gain * search.dispersion() / std::max(smaller.chi2 - larger.chi2, 1e-300);
 }
 
 /// The smallest set that the next larger one does not beat.
@@ -145,7 +182,8 @@ const Fit* choose(const Search& search, const Rules& rules) {
     const double already = now == nullptr ? 0.0 : search.explained(*now), share = search.explained(*next) - already;
     const double material = search.material(*next, before);
     const bool earns = now == nullptr || share >= rules.pair_share || (share >= rules.pair_least && material >= rules.pair_material) ||
-                       (share >= rules.pair_clean && material >= 2.0 * rules.pair_material && share >= rules.pair_rest * (1.0 - already));
+                       (share >= rules.pair_clean && material >= 2.0 * rules.pair_material && share >= rules.pair_rest * (1.0 - already)) ||
+                       (material >= rules.pair_material && where_silent(search, before, *next, rules) >= rules.silent_share);
     if (!enough || material < 1.0 || !earns) {
       if (now == nullptr) continue;  // two effects may cancel in the test of singles
       break;
@@ -184,6 +222,14 @@ std::set<Effect> common(const Fit& winner, const std::vector<const Fit*>& rivals
 
 void say(Result& r, const std::string& sentence) { r.sentence = sentence; }
 
+/// Median size of the gain errors that a fit asks of the records: what no instrument does is not explained.
+double gain_asked(const Fitter& fitter, const Fit& f) {
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < fitter.use.size(); ++i)
+    if (fitter.use[i]) sizes.push_back(std::abs(f.log_gain[i]));
+  return median(std::move(sizes));
+}
+
 void name(const Search& search, const Fit& winner, Result& r, const Options& options) {
   const auto rivals = rivals_of(search, winner, r.rules, r.not_testable);
   const Fitter& fitter = search.fitter();
@@ -215,6 +261,8 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   }
   const Structure left = search.structure(winner);
   r.partial = left.z > r.rules.partial_structure && left.excess > r.rules.partial_share * (search.base().chi2 - winner.chi2 + left.excess);
+  // a law whose value stands at the end of its range is not believed to be the whole of what acts (discovery.md 4.3: inside bounds)
+  r.partial = r.partial || winner.at_bound || gain_asked(fitter, winner) > r.rules.gain_most;
   if (rivals.empty()) {
     r.verdict = "effect";
     say(r, "The measurements behave as if " + names(effects_in(winner)) + (r.partial ? " acted, among something else that remains unnamed." : " acted, under these protocols.") +
@@ -239,6 +287,7 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
   r.masked = screen.score(*winner.forms[0], winner.params[0]).masked;
   r.next = next_experiment(fitter, winner, *rivals[0]);
+  if (r.next) r.sentence += " What would: " + r.next->protocol + ".";
 }
 
 void name_nothing(const Search& search, Result& r, const Options& options) {
@@ -283,7 +332,7 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise);
   r.residual_terms = describe(fitter.model(), r.before);
   if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after);
-  list_tried(search, r, r.verdict == "effect" ? winner : nullptr);
+  list_tried(search, r, winner);
 }
 
 }  // namespace

@@ -47,30 +47,41 @@ Kernel fractional(double g1, double tau1, double order) {
   return k;
 }
 
-Kernel slab_drainage(double g1, double diffusivity, double size) {
+namespace {
+
+constexpr int kModes = 12;
+
+/// What the series leaves out goes into one more exponential with its weight and first moment (sum w tau = size^2/D times `moment`).
+Kernel drainage(double g1, double time, const double (&m)[kModes], double weight, double moment) {
   Kernel k{1.0 - g1, {}, {}};
-  double sum = 0.0;
-  for (int n = 0; n < 8; ++n) {
-    const double m = (2 * n + 1) * kPi;
-    k.weight.push_back(8.0 / (m * m));
-    k.tau.push_back(size * size / (m * m * diffusivity));
-    sum += k.weight.back();
+  double rest = 1.0;
+  for (const double a : m) {
+    const double w = weight / (a * a);
+    k.weight.push_back(g1 * w);
+    k.tau.push_back(time / (a * a));
+    rest -= w;
+    moment -= w / (a * a);
   }
-  for (double& w : k.weight) w *= g1 / sum;
+  k.weight.push_back(g1 * rest);
+  k.tau.push_back(time * moment / rest);
   return k;
 }
 
+}  // namespace
+
+Kernel slab_drainage(double g1, double diffusivity, double size) {
+  double m[kModes];
+  for (int n = 0; n < kModes; ++n) m[n] = (2 * n + 1) * kPi;
+  return drainage(g1, size * size / diffusivity, m, 8.0, 1.0 / 12.0);
+}
+
 Kernel radial_drainage(double g1, double diffusivity, double size) {
-  constexpr double kZeros[] = {2.404825558, 5.520078110, 8.653727913, 11.79153444, 14.93091771, 18.07106397};
-  Kernel k{1.0 - g1, {}, {}};
-  double sum = 0.0;
-  for (const double a : kZeros) {
-    k.weight.push_back(4.0 / (a * a));
-    k.tau.push_back(size * size / (a * a * diffusivity));
-    sum += k.weight.back();
+  double zeros[kModes] = {2.404825558, 5.520078110, 8.653727913, 11.79153444};
+  for (int n = 4; n < kModes; ++n) {  // McMahon's expansion, here right to 1e-7
+    const double b = (n + 0.75) * kPi;
+    zeros[n] = b + 1.0 / (8.0 * b) - 124.0 / (3.0 * std::pow(8.0 * b, 3));
   }
-  for (double& w : k.weight) w *= g1 / sum;
-  return k;
+  return drainage(g1, size * size / diffusivity, zeros, 4.0, 1.0 / 8.0);
 }
 
 void relax(const Kernel& k, const Eigen::VectorXd& time, Eigen::Ref<Eigen::VectorXd> f) {

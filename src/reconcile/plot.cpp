@@ -13,7 +13,7 @@ constexpr int kMost = 500;  // points of one curve that are drawn
 
 std::string number(double v) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", v);
+  std::snprintf(text, sizeof text, "%.5g", std::abs(v) < 1e-300 ? 0.0 : v);
   return text;
 }
 
@@ -23,6 +23,15 @@ struct Frame {
   double px(double x) const { return 58 + (x - x0) / (x1 - x0) * (width - 70); }
   double py(double y) const { return height - 36 - (y - y0) / (y1 - y0) * (height - 62); }
 };
+
+/// About four round values within [low, high], steps of 1, 2 or 5.
+std::vector<double> ticks(double low, double high) {
+  const double rough = (high - low) / 4.0, decade = std::pow(10.0, std::floor(std::log10(rough))), part = rough / decade;
+  const double step = decade * (part < 1.5 ? 1.0 : part < 3.5 ? 2.0 : part < 7.5 ? 5.0 : 10.0);
+  std::vector<double> out;
+  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0) out.push_back(std::abs(k) < 0.5 ? 0.0 : k * step);
+  return out;
+}
 
 void widen(double& low, double& high) {
   if (!(low < high)) low -= 0.5 * (std::abs(low) + 1e-12), high += 0.5 * (std::abs(high) + 1e-12);
@@ -71,18 +80,21 @@ std::string plot(const PlotText& text, const std::vector<Curve>& curves, int wid
   };
   out += "<rect x='58' y='26' width='" + std::to_string(width - 70) + "' height='" + std::to_string(height - 62) + "' fill='none' stroke='#999'/>";
   label(58, 16, text.title, "start");
-  label(58, height - 20, number(f.x0), "middle");
-  label(width - 12, height - 20, number(f.x1), "end");
+  const auto mark = [&](double x0, double y0, double x1, double y1) {
+    char line[120];
+    std::snprintf(line, sizeof line, "<path d='M%.1f %.1fL%.1f %.1f' stroke='#999'/>", x0, y0, x1, y1);
+    out += line;
+  };
+  for (const double x : ticks(f.x0, f.x1)) mark(f.px(x), height - 36, f.px(x), height - 32), label(f.px(x), height - 20, number(x), "middle");
+  for (const double y : ticks(f.y0, f.y1)) mark(54, f.py(y), 58, f.py(y)), label(52, f.py(y) + 4, number(y), "end");
   label(0.5 * (58 + width), height - 6, text.x, "middle");
-  label(54, height - 36, number(f.y0), "end");
-  label(54, 34, number(f.y1), "end");
   out += "<text transform='rotate(-90)' x='" + std::to_string(-height / 2) + "' y='12' text-anchor='middle'>" + escaped(text.y) + "</text>";
   for (const Curve& c : curves) out += curve(c, f);
   return out + "</svg>";
 }
 
 std::string heat_map(const std::vector<std::string>& rows, const std::vector<std::vector<double>>& cells, double most) {
-  const int h = 16, left = 150, w = 560;
+  const int h = 16, left = 200, w = 560;
   std::string out = "<svg viewBox='0 0 " + std::to_string(left + w) + " " + std::to_string(h * static_cast<int>(rows.size())) + "' width='" + std::to_string(left + w) + "'>";
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const int y = static_cast<int>(r) * h;

@@ -2,9 +2,11 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <set>
 #include <sstream>
 
 #include "base/markup.h"
+#include "base/units.h"
 #include "reconcile/hardware.h"
 #include "reconcile/plot.h"
 #include "reconcile/report.h"
@@ -30,7 +32,17 @@ std::string row(const std::vector<std::string>& cells, const char* tag = "td") {
   return out + "</tr>\n";
 }
 
-std::string interval(const Estimate& e) { return number(e.value) + " " + e.unit + " (" + number(e.low) + " to " + number(e.high) + ")"; }
+/// With a prefix where the unit is a single symbol: 119 kPa, not 1.19e+05 Pa.
+std::string quantity(double v, const std::string& unit) {
+  const bool plain = unit == "m" || unit == "N" || unit == "Pa" || unit == "s";
+  return plain && std::isfinite(v) && v != 0.0 ? format_prefixed(v, unit) : number(v) + (unit == "-" ? "" : " " + unit);
+}
+
+std::string interval(const Estimate& e) { return quantity(e.value, e.unit) + " (" + quantity(e.low, e.unit) + " to " + quantity(e.high, e.unit) + ")"; }
+
+/// A channel as its file writes it.
+Eigen::VectorXd written(const Channel& c, const Eigen::VectorXd& si) { return (si.array() - c.shift) / c.scale; }
+std::string axis(const Channel& c) { return c.name + (c.unit.empty() || c.unit == "-" ? "" : " [" + c.unit + "]"); }
 
 std::string unit_of(const Dataset& d, const std::string& channel) {
   for (const ChannelInfo& k : info(d.rig).channels)
@@ -61,22 +73,44 @@ Curve replicate_band(const Dataset& d, std::size_t trial, const std::string& out
   return band;
 }
 
+std::string protocol_of(const Trial& t) {
+  std::string out;
+  for (const auto& [key, value] : t.protocol) out += (out.empty() ? "" : ", ") + key + " " + value;
+  return out;
+}
+
+/// Measured, before and after of one output of one record, over time or over an input.
+std::string record_plot(const Dataset& d, const Result& r, std::size_t i, std::size_t c, const Channel* input) {
+  const Trial& t = d.trials[i];
+  const Channel& out = d.channel(d.outputs[c]);
+  const Eigen::VectorXd x = input == nullptr ? t.time : written(*input, t.at(input->name));
+  std::vector<Curve> lines;
+  if (Curve band = replicate_band(d, i, d.outputs[c]); input == nullptr && band.low.size() > 0) {
+    band.y = written(out, band.y), band.low = written(out, band.low);
+    lines.push_back(std::move(band));
+  }
+  lines.push_back({x, written(out, t.at(d.outputs[c])), "#999", true, {}});
+  lines.push_back({x, written(out, r.before.predicted[i][c]), "#26c", false, {}});
+  if (i < r.after.predicted.size() && !r.after.predicted[i].empty()) lines.push_back({x, written(out, r.after.predicted[i][c]), "#c22", false, {}});
+  return plot({input == nullptr ? t.file + ": " + protocol_of(t) : protocol_of(t), input != nullptr ? axis(*input) : t.clocked ? "time [s]" : "sample", axis(out)}, lines);
+}
+
 void curves(const Dataset& d, const Result& r, std::ostringstream& s) {
   s << "<h2>Measured, before and after</h2><p>Grey: measured; pale: from the least to the most of its replicates; blue: the baseline, refitted; red: with what the verdict names. Each record keeps its own stiffness.</p><div class='plots'>";
+  const Channel* input = nullptr;
+  for (const Channel& c : d.channels)
+    if (c.input && c.name != "time" && input == nullptr) input = &c;
+  std::set<std::string> seen;
+  std::string over;
   int drawn = 0;
-  for (std::size_t i = 0; i < d.trials.size() && drawn < 12; ++i) {
+  for (std::size_t i = 0; i < d.trials.size(); ++i) {
     if (i >= r.before.predicted.size() || r.before.predicted[i].empty()) continue;
-    const Trial& t = d.trials[i];
-    for (std::size_t c = 0; c < d.outputs.size() && drawn < 12; ++c, ++drawn) {
-      std::vector<Curve> lines;
-      if (Curve band = replicate_band(d, i, d.outputs[c]); band.low.size() > 0) lines.push_back(std::move(band));
-      lines.push_back({t.time, t.at(d.outputs[c]), "#999", true, {}});
-      lines.push_back({t.time, r.before.predicted[i][c], "#26c", false, {}});
-      if (i < r.after.predicted.size() && !r.after.predicted[i].empty()) lines.push_back({t.time, r.after.predicted[i][c], "#c22", false, {}});
-      s << plot({t.file, t.clocked ? "time [s]" : "sample", d.outputs[c] + " [" + unit_of(d, d.outputs[c]) + "]"}, lines);
-    }
+    for (std::size_t c = 0; c < d.outputs.size() && drawn < 12; ++c, ++drawn) s << record_plot(d, r, i, c, nullptr);
+    const bool first = seen.insert(d.protocol_text(d.trials[i])).second;
+    if (first && input != nullptr && d.trials[i].has(input->name) && seen.size() <= 6) over += record_plot(d, r, i, 0, input);
   }
   s << "</div>\n";
+  if (!over.empty()) s << "<p>The same over " << escaped(input->name) << ", one record of each protocol.</p><div class='plots'>" << over << "</div>\n";
 }
 
 /// Mean residual of a stretch of a record over its standard error, before.
@@ -133,7 +167,7 @@ void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
     << row({"output", "noise, 1 sd", "from", "correlation of neighbours", "full scale"}, "th");
   for (std::size_t c = 0; c < r.noise.output.size(); ++c) {
     const OutputNoise& o = r.noise.output[c];
-    s << row({d.outputs[c], number(o.sigma) + " " + unit_of(d, d.outputs[c]), o.from, number(o.rho, 2), number(o.full_scale)});
+    s << row({d.outputs[c], quantity(o.sigma, unit_of(d, d.outputs[c])), o.from, number(o.rho, 2), quantity(o.full_scale, unit_of(d, d.outputs[c]))});
   }
   s << "</table><p>Records of one batch differ in stiffness by " << number(100 * r.noise.scatter, 2) << " % (1 sd). Structure left in the residual: " << number(r.structure_before, 3) << " standard deviations before, "
     << number(r.structure_after, 3) << " after. Overdispersion used for all comparisons: " << number(r.dispersion, 3) << ".</p>\n<h2>Parameters</h2><table>" << row({"parameter", "baseline alone", "with the effect"}, "th");
@@ -191,7 +225,11 @@ void closing(const Dataset& d, const Result& r, const std::string& program, std:
     for (const Term& t : r.shape) s << row({t.name, number(t.coefficient, 3), number(t.stability, 2)});
     s << "</table>\n";
   }
-  if (r.verdict == "ambiguous") s << "<h2>Rivals</h2><p>" << r.rivals.size() << " sets explain the records equally well; the signatures of the first two correlate by " << number(r.correlation, 3) << "; a refit of the baseline hides " << number(100 * r.masked, 3) << " % of the first one's.</p>\n";
+  if (r.verdict == "ambiguous") {
+    s << "<h2>Rivals</h2><table>" << row({"effects", "form", "behind the best, BIC", "explains"}, "th");
+    for (const Tried& t : r.rivals) s << row({names(t.effects), t.form, number(t.evidence - r.rivals[0].evidence, 3), number(100 * t.explained, 3) + " %"});
+    s << "</table><p>The signatures of the first two correlate by " << number(r.correlation, 3) << "; a refit of the baseline hides " << number(100 * r.masked, 3) << " % of the first one's.</p>\n";
+  }
   if (r.next) s << "<h2>Next experiment</h2><p>" << escaped(r.next->protocol) << ": " << escaped(r.next->why) << ". It would decide in " << number(100 * r.next->chance, 3) << " % of 50 simulated repetitions.</p>\n";
   s << "<h2>Not testable with these trials</h2><table>" << row({"effect", "why", "what would show it"}, "th");
   for (const NotTestable& n : r.not_testable) s << row({info(n.effect).name, n.why, n.needs});
@@ -199,7 +237,12 @@ void closing(const Dataset& d, const Result& r, const std::string& program, std:
   const Rules& k = r.rules;
   for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"material change, share of full scale", k.materiality}, {"the same in an eighth of a record", k.window_materiality},
        {"chance of noise alone to detect", k.detect_p}, {"fall of chi-squared to detect", k.detect}, {"residual structure that proves a gap, sd", k.structure}, {"fall of BIC to accept", k.accept_evidence}, {"share of the gap to be explained", k.explained},
-       {"the same on held-out protocols", k.held_out}, {"tie, BIC", k.tie}, {"a further effect: BIC", k.pair_evidence}, {"a further effect: share", k.pair_share}, {"masked share that hides an effect", k.masked}})
+       {"the same on held-out protocols", k.held_out}, {"tie, BIC", k.tie}, {"tie of a rival that these trials could not show", k.aside_tie}, {"tie of a name whose deciding protocol was not run", k.untestable_tie},
+       {"by which another form must beat the catalogue's, BIC", k.form_preference}, {"effects at most", k.most_effects}, {"a further effect: BIC", k.pair_evidence}, {"a further effect: share of the gap, or", k.pair_share},
+       {"this share", k.pair_least}, {"with a change of the prediction, times what is material, of", k.pair_material}, {"or this share (change twice that)", k.pair_clean}, {"if it takes of what is left", k.pair_rest},
+       {"or of its gain from samples where the others are silent", k.silent_share}, {"which are at least this part", k.silent_least}, {"partial: sd left", k.partial_structure}, {"partial: share left", k.partial_share},
+       {"partial: gain error asked for", k.gain_most}, {"masked share that hides an effect", k.masked}, {"squared signal to noise that shows one", k.testable}, {"effects screened at most", k.screen_most},
+       {"with a share of the best score of", k.screen_share}})
     s << row({name, number(value)});
   s << "</table>\n";
   if (const auto hardware = check_hardware(d); !hardware.empty()) {

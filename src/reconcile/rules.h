@@ -20,11 +20,15 @@ struct Rules {
   double pair_material = 1.2;        // times the materiality (development half: less is the first effect's form error), or
   double pair_clean = 0.01;          // this share, if it also takes
   double pair_rest = 0.80;           // of what the smaller set leaves
+  double silent_share = 0.50;        // or if this share of its gain comes from where the smaller set changes less than the materiality, if that is
+  double silent_least = 0.15;        // at least this part of the samples: no form of the smaller set can err there
   double aside_tie = 3.0;            // the same for a rival that these trials could not show anyway
   double untestable_tie = 24.0;      // tie of a name whose deciding protocol was not run
   double form_preference = 4.0;      // of BIC, by which another form must beat the one of the catalogue
   double partial_structure = 6.0;    // standard deviations left, and
   double partial_share = 0.04;       // share left, both above: "partial"
+  double gain_most = 0.012;          // error of the records' gain (median) that a name may ask for (contract: up to 1 %); beyond it "partial", as is
+                                     // a law whose value stands at the end of its range
   int most_effects = 3;
   double masked = 0.999;             // share of a signature that the baseline's refit swallows: not testable
   double testable = 16.0;            // squared signal to noise (noise 1 % of full scale) below which an effect cannot be seen

@@ -12,7 +12,7 @@ Screen::Screen(const Fitter& fitter, const Fit& fit) : fitter_(fitter), fit_(fit
   const auto g = fitter.globals(fit.forms);
   const auto ng = static_cast<Eigen::Index>(g.size());
   const int own = fitter.own_parameters();
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(ng, ng), J;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(ng, ng), all = A, J;
   for (std::size_t i = 0; i < fitter.use.size(); ++i) {
     if (!fitter.use[i]) continue;
     trials_.push_back(static_cast<int>(i));
@@ -26,10 +26,12 @@ Screen::Screen(const Fitter& fitter, const Fit& fit) : fitter_(fitter), fit_(fit
     if (fitter.model().has_gain()) D(k, k) += 1.0 / std::pow(fitter.noise().gain_scatter, 2);
     D_.push_back(own > 0 ? D.ldlt().solve(Eigen::MatrixXd::Identity(own, own)).eval() : D);
     C_.push_back(G_.back().transpose() * N_.back());
+    all.noalias() += G_.back().transpose() * G_.back();
     A.noalias() += G_.back().transpose() * G_.back();
     if (own > 0) A.noalias() -= C_.back() * D_.back() * C_.back().transpose();
   }
-  for (Eigen::Index k = 0; k < ng; ++k) A(k, k) += 1e-9 * std::max(A(k, k), 1e-12) + 1e-300;
+  for (Eigen::Index k = 0; k < ng; ++k) A(k, k) += 1e-9 * std::max(A(k, k), 1e-12) + 1e-300, all(k, k) += 1e-12 * all(k, k) + 1e-300;
+  common_ = ng > 0 ? all.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : all;
   S_ = ng > 0 ? A.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : A;
 }
 
@@ -62,11 +64,14 @@ double Screen::inner(const Signature& a, const Signature& b) const {
 }
 
 Score Screen::score(const Form& form, const std::vector<double>& start) const {
-  Score out{&form, start, 0.0, 0.0, 0.0, 1.0};
+  Score out{&form, start, 0.0, 0.0, 0.0, 1.0, 1.0};
   const Signature s = signature(form, start);
   out.seen = std::max(0.0, inner(s, s));
   if (s.norm <= 0.0 || out.seen <= 1e-9 * s.norm) return out;
   out.masked = 1.0 - out.seen / s.norm;
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(common_.rows());
+  for (std::size_t i = 0; i < trials_.size(); ++i) g += G_[i].transpose() * s.s[i];
+  out.imitated = g.size() > 0 ? g.dot(common_ * g) / s.norm : 0.0;
   // at the optimum the residual is orthogonal to what is fitted, so no projection of it is needed
   double along = 0.0;
   for (std::size_t i = 0; i < trials_.size(); ++i) along += s.s[i].dot(r_[i]);
@@ -217,7 +222,7 @@ std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& fo
     if (why.empty() && !line) {
       const auto at = best.find(e);
       if (at == best.end()) why = "these trials never bring it about";
-      else if (at->second.masked > masked) why = "a change of the baseline's own parameters imitates it (masked to " + std::to_string(static_cast<int>(std::floor(1000 * at->second.masked)) / 10) + " %)";
+      else if (at->second.imitated > masked) why = "a change of the baseline's own parameters imitates it (masked to " + std::to_string(static_cast<int>(std::floor(1000 * at->second.imitated)) / 10) + " %)";
       else if (at->second.seen * clearer < testable) why = "even a strong effect would change these records by less than their noise";
     }
     if (!why.empty()) out.push_back({e, why, info(e).shows});

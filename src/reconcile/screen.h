@@ -15,6 +15,7 @@ struct Score {
   double amplitude = 0.0;  // in units of the start
   double seen = 0.0;       // squared norm of the orthogonal part
   double masked = 1.0;     // share of the signature that the present model can imitate
+  double imitated = 1.0;   // the same by its common parameters alone: what a record's own scale swallows still costs that scale's prior
 };
 
 class Screen {
@@ -54,7 +55,7 @@ class Screen {
   std::vector<int> trials_;
   std::vector<Eigen::VectorXd> r_;
   std::vector<Eigen::MatrixXd> G_, N_, C_, D_;  // D_ inverted
-  Eigen::MatrixXd S_;                           // inverted
+  Eigen::MatrixXd S_, common_;                  // inverted; with and without the records' own scales
 };
 
 struct NotTestable {

@@ -77,15 +77,17 @@ void Search::fit_baseline() {
   base_ = fitter_.fit({}, loose.base, {}, {}, &loose);
 }
 
-/// Whether a line folded back by slow sampling still stands clear of what is slow in the records.
-bool Search::separate(double frequency) const {
-  for (const Trial& t : model_.data().trials) {
+/// The same fit without the records in which slow sampling folds this line onto what is slow anyway: a line must be seen in the others.
+Fit Search::separate(const Fit& from, double frequency) const {
+  Fit out = from;
+  for (std::size_t i = 0; i < out.residual.size(); ++i) {
+    const Trial& t = model_.data().trials[i];
     const double span = t.time[t.samples() - 1] - t.time[0], rate = (t.samples() - 1) / span;
     double folded = std::fmod(frequency, rate);
     folded = std::min(folded, rate - folded);
-    if (folded * span < 6.0) return false;
+    if (folded * span < 6.0) out.residual[i].clear();
   }
-  return true;
+  return out;
 }
 
 std::vector<Score> Search::lines(const Fit& from) const {
@@ -101,8 +103,8 @@ std::vector<Score> Search::lines(const Fit& from) const {
       continue;
     }
     for (const auto& [low, high] : bands) {
-      const Line line = strongest_line(fitter_, from, low, high);
-      if (f.effect == Effect::mains_hum && !separate(line.frequency)) continue;
+      Line line = strongest_line(fitter_, from, low, high);
+      if (f.effect == Effect::mains_hum) line = strongest_line(fitter_, separate(from, line.frequency), low, high);
       const double expected = line.columns + 4.5 * std::sqrt(2.0 * line.columns) + 12.0;
       if (line.gain > expected) out.push_back({&f, {line.frequency}, line.gain, 1.0, line.gain, 0.0});
     }
@@ -133,7 +135,7 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
     auto& forms = used[e];
     const bool new_form = forms.count(s.form->kind) == 0;
     if (new_form && static_cast<int>(forms.size()) >= most_forms && s.form->kind != 0) continue;
-    if (!new_form && forms[s.form->kind] >= (s.form->params.size() > 1 || e == Effect::saturation ? 2 : 1)) continue;
+    if (!new_form && forms[s.form->kind] >= (s.form->params.size() > 1 || e == Effect::saturation || e == Effect::mains_hum ? 2 : 1)) continue;  // 50 and 60 Hz may fold to the same line
     ++forms[s.form->kind];
     candidates.push_back(s);
   }
@@ -144,7 +146,11 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
     auto params = from.params;
     forms.push_back(candidates[i].form);
     params.push_back(candidates[i].start);
-    fits[i] = fitter_.fit(forms, from.base, params, {from.forms.empty() ? 25 : 18, 1e-4}, &from);
+    const FitOptions effort{from.forms.empty() ? 25 : 18, 1e-4};
+    fits[i] = fitter_.fit(forms, from.base, params, effort, &from);
+    if (candidates[i].form->effect != Effect::saturation) return;
+    // a record that is clipped throughout may have been given a scale of its own for it, from which no slope leads back
+    if (Fit anew = fitter_.fit(forms, from.base, params, effort); anew.chi2 < fits[i].chi2) fits[i] = std::move(anew);
   });
   return fits;
 }

@@ -38,7 +38,7 @@ class Search {
   void fit_baseline();
   std::vector<Fit> extend(const Fit& from, int most_effects, int most_forms) const;
   std::vector<Score> lines(const Fit& from) const;
-  bool separate(double frequency) const;
+  Fit separate(const Fit& from, double frequency) const;
   void keep(std::vector<Fit> fits);
   void refresh();
   bool worth_more(const Fit& f) const;

@@ -161,7 +161,7 @@ std::vector<Form> RigModel::sensor_forms() const {
       const double r = 3.0 * fs / span;
       out.push_back({Effect::sensor_drift, 2 * at, name + ": offset linear in time", {{"rate", si + "/s", -r, r, false}}, {{0.02 * r}}, false});
       out.push_back({Effect::sensor_drift, 2 * at + 1, name + ": offset logarithmic in time",
-                     {{"rate", si, -fs, fs, false}, {"start", "s", dt, span, true}}, {{0.02 * fs, 0.03 * span}}, false});
+                     {{"rate", si, -fs, fs, false}, {"start", "s", 0.03 * dt, 10 * span, true}}, {{0.02 * fs, 0.03 * span}}, false});
     }
     double low = 1e300, high = -1e300;
     for (const Trial& t : d.trials)

@@ -64,6 +64,33 @@ std::vector<Eigen::VectorXd> replicate_differences(const Dataset& d, const Fit& 
   return out;
 }
 
+/// Variance that a line leaves which a clock blurs that strays by a twentieth of its step (contract: jitter is ordinary): with the phase's
+/// deviation p = 2 pi f s, the coherent line has exp(-p^2) of the power and the rest is white.
+double line_remainder(const Fitter& fitter, const Fit& fit, std::size_t output) {
+  Fit without = fit;
+  double frequency = 0.0;
+  for (std::size_t k = without.forms.size(); k-- > 0;)
+    if (without.forms[k]->line) {
+      frequency = std::max(frequency, without.params[k][0]);
+      without.forms.erase(without.forms.begin() + static_cast<std::ptrdiff_t>(k));
+      without.params.erase(without.params.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  if (frequency <= 0.0) return 0.0;
+  double sum = 0.0;
+  int records = 0;
+  for (std::size_t i = 0; i < fit.predicted.size(); ++i) {
+    if (fit.predicted[i].empty()) continue;
+    std::vector<Eigen::VectorXd> plain;
+    fitter.residual(static_cast<int>(i), fitter.setting(without, static_cast<int>(i)), nullptr, &plain);
+    const Trial& t = fitter.model().data().trials[i];
+    const double step = (t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1), phase = 2.0 * std::numbers::pi * frequency * 0.05 * step;
+    const double power = (fit.predicted[i][output] - plain[output]).squaredNorm() / static_cast<double>(t.samples());
+    sum += power * std::expm1(std::min(phase * phase, 3.0));
+    ++records;
+  }
+  return records > 0 && std::isfinite(sum) ? sum / records : 0.0;
+}
+
 }  // namespace
 
 Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
@@ -87,7 +114,8 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
     if (channel.noise > 0.0) {
       o.from = "stated";
       // jitter of the clock and steps of the converter may add to what is stated, but not anything
-      o.sigma = std::max(std::clamp(std::sqrt(0.5 * v1), channel.noise, 1.15 * channel.noise), floor);
+      const double most = 1.15 * std::sqrt(channel.noise * channel.noise + line_remainder(fitter, fit, c));
+      o.sigma = std::max(std::clamp(std::sqrt(0.5 * v1), channel.noise, most), floor);
       o.rho = std::clamp(1.0 - 0.5 * v1 / (o.sigma * o.sigma), 0.0, 0.98);
       // a variogram that keeps rising says the same more carefully; a slow misfit cannot lift it beyond the stated noise
       continue;

@@ -8,6 +8,7 @@ import os
 import sys
 import numpy as np
 import forms as F
+import oracle
 from instrument import Capstan, Forceps, Hold, Needle
 from mechanical import Cantilever, Spatula, Tissue, Vessel
 
@@ -41,7 +42,7 @@ def measure(rig, fx, scatter, replicates):
     for p in rig.protocols():
         t, x, y, _, _ = rig.trial(p, {}, 1.0)
         top, span = max(top, np.abs(y[rig.output]).max()), max(span, t[-1])
-    rig.span = span
+    rig.span, rig.top = span, top
     for k, p in enumerate(rig.protocols()):
         for _ in range(replicates):
             t, x, y, protocol, specimen = rig.trial(p, fx, np.exp(scatter * rig.rng.standard_normal()))
@@ -60,21 +61,6 @@ def noise(rng, n, sigma, rho, white):
     for i in range(1, n):
         r[i] = rho * r[i - 1] + np.sqrt(1 - rho ** 2) * e[i]
     return sigma * (np.sqrt(1 - white) * r + np.sqrt(white) * rng.standard_normal(n))
-
-
-def reduced(with_effect, without):
-    """Root-mean-square difference after the best common factor and offsetless rescale of every trial, and its total square."""
-    square, worst = 0.0, 0.0
-    num = den = 0.0
-    for a, b in zip(with_effect, without):
-        num, den = num + a @ b, den + b @ b
-    common = num / den if den else 1.0
-    for a, b in zip(with_effect, without):
-        own = (a @ b + common * den / len(without) * 3) / (b @ b + den / len(without) * 3) if den else 1.0
-        d = a - own * b
-        square += d @ d
-        worst = max(worst, np.sqrt(np.mean(d ** 2)))
-    return worst, square
 
 
 def build(cls, kind, seed):
@@ -98,10 +84,7 @@ def build(cls, kind, seed):
     replicates = int(rng.integers(2, 4))
     if cls is Cantilever:
         replicates = 2
-    state = rng.bit_generator.state
     trials = measure(rig, fx, scatter, replicates)
-    rng.bit_generator.state = state
-    plain = measure(rig, {}, scatter, replicates)
     outputs = list(trials[0][4])
     full = {c: max(np.concatenate([tr[4][c] for tr in trials])) - min(np.concatenate([tr[4][c] for tr in trials])) for c in outputs}
     if cls is Hold:
@@ -110,18 +93,25 @@ def build(cls, kind, seed):
         level = np.exp(rng.uniform(np.log(0.005), np.log(0.05 if kind in ('single', 'double', 'outside') else 0.1)))
         sigma = {c: level * full[c] for c in outputs}
         rho, white = rng.choice([0.0, 0.3, 0.6, 0.85]), rng.choice([0.0, 0.5])
-    worst, square = reduced([tr[4][rig.output] for tr in trials], [tr[4][rig.output] for tr in plain])
-    low = (1 - white) * (1 + rho) / (1 - rho) + white
-    snr = np.sqrt(square / low) / sigma[rig.output]
-    if names and kind != 'unidentifiable' and (snr < 4 or worst < 0.012 * full[rig.output]):
-        return None
-    if cls is Hold and names:
-        worst, snr = list(fx.values())[0].get('rms', list(fx.values())[0].get('amplitude', 1e-5)), 20
-    return rig, fx, trials, sigma, rho, white, full, snr, names, scatter
+    faint = rng.uniform(4, 8) if kind == 'single' and cls is not Hold and rng.random() < 0.25 else 0.0
+    snr, worst, rival = 0.0, 0.0, (np.inf, '')
+    if names:
+        low = (1 - white) * (1 + rho) / (1 - rho) + white  # of slow noise; a line stands in faster, quieter bands
+        truth = oracle.Truth(rig, fx, sigma[rig.output], low, scatter, replicates * (3 if cls is Hold else 1), sensor)
+        told = oracle.signal_to_noise(truth)
+        snr, worst = min(v[0] for v in told.values()), min(v[1] for v in told.values())
+        if faint and snr > faint and level * snr / faint < 0.1:
+            sigma = {c: v * snr / faint for c, v in sigma.items()}
+            snr = faint
+        if kind == 'single':
+            rival = oracle.nearest_rival(truth, pool)
+        if kind != 'unidentifiable' and (snr < 4 or worst < (0.3 * rig.sigma if cls is Hold else 0.012 * full[rig.output])):
+            return None
+    return rig, fx, trials, sigma, rho, white, full, snr, names, scatter, rival
 
 
 def write(out, name, kind, made, seed):
-    rig, fx, trials, sigma, rho, white, full, snr, names, scatter = made
+    rig, fx, trials, sigma, rho, white, full, snr, names, scatter, rival = made
     rng = np.random.default_rng(seed + 7)
     folder = os.path.join(out, 'data', name)
     os.makedirs(folder, exist_ok=True)
@@ -168,7 +158,7 @@ def write(out, name, kind, made, seed):
         lines.append(f'  - {{ file: {file}, protocol: {{ ' + ', '.join(f'{k}: "{v}"' for k, v in protocol.items()) + f' }}, repeat: {letter}{extra}{held} }}')
     open(os.path.join(folder, 'experiment.yaml'), 'w').write('\n'.join(lines) + '\n')
     os.makedirs(os.path.join(out, 'labels'), exist_ok=True)
-    json.dump({'kind': kind, 'rig': rig.rig, 'effects': names, 'parameters': fx, 'snr': float(snr), 'rho': float(rho), 'white': float(white), 'seed': seed, 'scatter': float(scatter)},
+    json.dump({'kind': kind, 'rig': rig.rig, 'effects': names, 'parameters': fx, 'snr': float(snr), 'rival': rival[1], 'distance': float(rival[0]) if np.isfinite(rival[0]) else None, 'solver': F.SOLVER, 'rho': float(rho), 'white': float(white), 'seed': seed, 'scatter': float(scatter)},
               open(os.path.join(out, 'labels', name + '.json'), 'w'), default=lambda o: o.item())
 
 
@@ -191,6 +181,8 @@ def main():
         cls = RIGS[i % len(RIGS)]
         kind = KINDS[(i // len(RIGS)) % len(KINDS)]
         if only and cls.rig not in only:
+            continue
+        if os.path.exists(os.path.join(out, 'labels', f'{cls.rig}-{i:04d}.json')):
             continue
         if kind == 'wrong-parameter' and not cls.free:
             kind = 'null'

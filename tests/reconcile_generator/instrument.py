@@ -5,6 +5,7 @@ import forms as F
 
 class Capstan:
     rig, model, free, output = 'suture-pull', 'suture/capstan', ['friction_coefficient'], 'pull_force'
+    refitted = ['mu']
     effects = ['speed-dependent-friction', 'bending-stiffness-loss', 'viscous-drag', 'sensor-drift', 'saturation', 'mains-hum']
     outside = ['offset-step', 'stick-slip']
 
@@ -61,6 +62,7 @@ class Capstan:
 
 class Needle:
     rig, model, free, output = 'needle-insertion', 'needle/linear', ['stiffness', 'puncture_force'], 'force'
+    refitted = ['k']
     effects = ['layer-rupture', 'shaft-friction', 'viscous-drag', 'sensor-lag', 'sensor-drift', 'saturation', 'mains-hum']  # a load train in series is a softer needle tissue: not testable
     outside = ['offset-step', 'square-drag']
 
@@ -128,6 +130,7 @@ class Needle:
 
 class Forceps:
     rig, model, output = 'forceps-bridge', 'forceps/linear', 'strain_counts'
+    refitted = ['gain', 'offset']
     free = ['strain_gain', 'strain_offset', 'pressure_gain', 'pressure_offset']
     effects = ['temperature-drift', 'bridge-nonlinearity', 'hysteresis', 'cross-talk', 'sensor-lag', 'sensor-drift', 'saturation', 'mains-hum']
     outside = ['offset-step', 'dead-angle']
@@ -197,6 +200,7 @@ class Forceps:
 
 class Hold:
     rig, model, free, output = 'tip-hold', 'hand/still', [], 'x'
+    refitted = []
     effects = ['physiological-tremor', 'pulsation', 'mains-hum']
     outside = ['offset-step', 'slow-tremor']
 

@@ -18,7 +18,7 @@ def ramp_hold(T, n, peak, cycles, hold_share, rest_share):
 
 
 class Tissue:
-    rig, model, free, output = 'tissue-block', 'brain/linear', ['youngs_modulus'], 'force'
+    rig, model, free, output, refitted = 'tissue-block', 'brain/linear', ['youngs_modulus'], 'force', ['E']
     effects = ['viscoelastic-relaxation', 'strain-stiffening', 'tension-compression-asymmetry', 'first-cycle-softening', 'permanent-set',
                'poroelastic-drainage', 'contact-adhesion', 'platen-friction', 'rig-compliance', 'pulsation', 'hysteresis', 'sensor-lag',
                'sensor-drift', 'saturation', 'mains-hum']
@@ -37,7 +37,7 @@ class Tissue:
         self.liftoff = 'contact-adhesion' in effects or rng.random() < 0.15
         self.n = int(rng.integers(220, 500))
         if self.shear:
-            self.free = ['youngs_modulus', 'poissons_ratio']
+            self.free, self.refitted = ['youngs_modulus', 'poissons_ratio'], ['E', 'nu']
         self.nu = rng.uniform(0.42, 0.49)
 
     def specimen(self):
@@ -161,7 +161,7 @@ class Spatula(Tissue):
 
     def __init__(self, rng, effects):
         super().__init__(rng, effects)
-        self.free, self.shear, self.liftoff = ['youngs_modulus'], False, 'contact-adhesion' in effects
+        self.free, self.refitted, self.shear, self.liftoff = ['youngs_modulus'], ['E'], False, 'contact-adhesion' in effects
         self.round = False
         self.H = rng.uniform(15e-3, 30e-3)
         self.h = self.H
@@ -195,6 +195,7 @@ class Spatula(Tissue):
 
 class Vessel:
     rig, model, free, output = 'vessel-inflation', 'vessel/linear', ['youngs_modulus'], 'outer_diameter'
+    refitted = ['E']
     effects = ['viscoelastic-relaxation', 'strain-stiffening', 'first-cycle-softening', 'fibre-stiffening', 'smooth-muscle-tone', 'residual-stress',
                'perivascular-tethering', 'sensor-lag', 'sensor-drift', 'saturation', 'mains-hum']
     outside = ['offset-step', 'damage', 'collapse']
@@ -240,7 +241,7 @@ class Vessel:
         lame = 1 / a ** 2 - 1 / b ** 2
         if 'residual-stress' in fx:
             bent = F.opened_sector(a, b, mu, fx['residual-stress']['opening_angle'])
-        grid = np.linspace(0, 0.8 * b * b, 400)
+        grid = np.linspace(0, 0.8 * b * b, 40 * F.FINE)
         table = np.array([2 * mu * C * lame + extra(C) for C in grid])
         if 'residual-stress' in fx:
             table = table + np.array([bent(C) for C in grid])
@@ -251,11 +252,8 @@ class Vessel:
         if 'viscoelastic-relaxation' in fx:
             v = fx['viscoelastic-relaxation']
             # creep of a Zener solid whose relaxation is 1 - g1 (1 - exp(-t/tau)): retardation time tau/(1-g1)
-            q = np.zeros_like(P)
             k, tr = v['g1'] / (1 - v['g1']), v['tau1'] / (1 - v['g1'])
-            for i in range(1, len(P)):
-                h = t[i] - t[i - 1]
-                q[i] = (q[i - 1] + h / tr * P[i]) / (1 + h / tr)
+            q = F.lagged(t, P, tr, 1)  # P(0) = 0
             Pe = P + k * q
         if 'first-cycle-softening' in fx:
             C = np.interp(Pe, table, grid)
@@ -300,6 +298,7 @@ class Vessel:
 
 class Cantilever:
     rig, model, free, output = 'suture-cantilever', 'suture/elastic', ['youngs_modulus'], 'tip_drop'
+    refitted = ['E']
     effects = ['rest-curvature', 'bending-creep', 'permanent-set', 'sensor-drift', 'saturation']
     outside = ['offset-step', 'kink']
 
@@ -335,7 +334,7 @@ class Cantilever:
         if 'bending-creep' in fx:
             v = fx['bending-creep']
             J = 1 + v['a'] * np.log(1 + t / v['t0'])
-        idx = np.unique(np.linspace(0, len(t) - 1, 15).astype(int))
+        idx = np.unique(np.linspace(0, len(t) - 1, 15 if F.FINE == 10 else 7).astype(int))
         shape = np.empty((len(idx), 2))
         most = 0.0
         for k, i in enumerate(idx):
