@@ -16,6 +16,7 @@ constexpr std::array<Fault, HandleWatch::kFaults> kKnown = {{
     {kForceBroken, "force-wire-broken", "danger", "The handle's wire for the squeeze is broken or shorted: the squeeze is not measured."},
     {kAngleSaturated, "angle-saturated", "warn", "The handle's opening is at the end of its amplifier's range."},
     {kForceSaturated, "force-saturated", "warn", "The handle's squeeze is at the end of its amplifier's range: the true force may be larger."},
+    {kNotSeen, "demonstration-waits", "warn", "The demonstration waits: what the hand reaches for is not there."},
 }};
 constexpr std::size_t kMostEvents = 1000;  // a loose wire may flicker for hours
 

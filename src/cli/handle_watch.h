@@ -20,7 +20,7 @@ class HandleWatch {
   /// In force at scene time `time` [s].
   std::vector<TaskWarning> warnings(double time) const;
 
-  static constexpr std::size_t kFaults = 5;
+  static constexpr std::size_t kFaults = 6;
   static constexpr double kGone = 1.0;  // [s]
 
  private:

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "cli/setup.h"
-#include "devices/demonstrator.h"
 #include "devices/haptic_link.h"
 #include "devices/igtl_tracker.h"
 #include "devices/replay_device.h"
@@ -91,6 +90,12 @@ InputDevices open_hands(const std::string& input, double motion_scale, const std
   return result;
 }
 
+void add_demonstrator(InputDevices& inputs, const std::string& script) {
+  auto demonstrator = std::make_unique<Demonstrator>(script);
+  inputs.demonstrator = demonstrator.get();
+  inputs.devices.push_back(std::move(demonstrator));
+}
+
 bool names_hands(const std::string& input) {
   for (const char* prefix : {"serial:", "haptic:", "igtl:"})
     if (input.starts_with(prefix)) return true;
@@ -107,7 +112,7 @@ InputDevices open_inputs(const std::string& input, const std::string& root, cons
   if (input == "demo") {
     const std::string script = demonstration_file(root, task);
     if (!std::filesystem::exists(script)) throw InputError("--input", "demo", task, "a task with a demonstration (" + script + " is not there)");
-    result.devices.push_back(std::make_unique<Demonstrator>(script));
+    add_demonstrator(result, script);
     result.description = "demonstrator";
     return result;
   }
@@ -115,7 +120,10 @@ InputDevices open_inputs(const std::string& input, const std::string& root, cons
     throw InputError("--input", "input", input, "demo, serial:PATH, haptic:PORT, igtl:PORT, a demonstration (*.yaml) or a recording");
   }
   const bool script = std::filesystem::path(input).extension() == ".yaml";
-  result.devices.push_back(script ? std::make_unique<Demonstrator>(input) : open_recording(input));
+  if (script)
+    add_demonstrator(result, input);
+  else
+    result.devices.push_back(open_recording(input));
   result.description = (script ? "demonstration " : "replay ") + std::filesystem::path(input).filename().string();
   return result;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "devices/demonstrator.h"
 #include "devices/device.h"
 #include "devices/pointer_device.h"
 #include "haptics/input_merge.h"
@@ -18,6 +19,7 @@ struct InputDevices {
   std::string calibration;           // file of the forceps, empty: none are read
   MotionScale scale;                 // from the hand's space to the scene's
   PointerDevice* pointer = nullptr;  // one of `devices`, if there is one
+  Demonstrator* demonstrator = nullptr;  // likewise; it sees by whoever runs the scene
 };
 
 /// "demo", "serial:PATH", "haptic:[ADDRESS:]PORT", "igtl:[ADDRESS:]PORT", several of them joined by "+", a demonstration (*.yaml) or a recording. Throws InputError.

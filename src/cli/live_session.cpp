@@ -59,12 +59,15 @@ LiveSession::LiveSession(Setup setup, InputDevices inputs, LiveOptions options)
       pointer_(inputs.pointer),
       device_names_(names_of(inputs.devices)),
       world_(setup_.model),
+      eyes_(world_.observation(), world_.description()),
       hands_(std::make_unique<HapticLoop>(std::move(inputs.devices), haptic_options(inputs.scale))),
       task_(setup_.task, world_.description()),
       pacing_(world_.description().dt),
       observations_(kQueue, world_.observation()),
       handed_(world_.observation()),
-      scored_(world_.observation()) {}
+      scored_(world_.observation()) {
+  if (inputs.demonstrator != nullptr) inputs.demonstrator->look_through(&eyes_);
+}
 
 LiveSession::~LiveSession() {
   stop_.store(true);

@@ -21,6 +21,7 @@
 #include "cli/security.h"
 #include "cli/setup.h"
 #include "haptics/haptic_loop.h"
+#include "haptics/scene_eyes.h"
 #include "session/recorder.h"
 #include "training/task_session.h"
 
@@ -96,6 +97,7 @@ class LiveSession {
   PointerDevice* pointer_;
   std::vector<std::string> device_names_;
   World world_;
+  SceneEyes eyes_;                           // of a demonstrator, read by the world's thread alone
   std::unique_ptr<HapticLoop> hands_;        // until the end
   TaskSession task_;
   Pacing pacing_;

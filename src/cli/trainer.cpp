@@ -41,7 +41,7 @@ HelloView hello_of(const TrainerOptions& options) {
     const bool shown = std::filesystem::exists(demonstration_file(options.root, task.name));
     any_shown = any_shown || shown;
     if (task.demonstration_only && !shown) continue;  // there is nothing to do in it
-    hello.tasks.push_back({task.name, task.title, task.description, task.demonstration_only, task.retraction != nullptr});
+    hello.tasks.push_back({task.name, task.title, task.description, task.demonstration_only, task.retraction != nullptr, shown});
   }
   for (const std::string& problem : problems) std::fprintf(stderr, "filum: task left out: %s\n", problem.c_str());
   hello.inputs = {"pointer"};
@@ -294,7 +294,8 @@ void Trainer::start_session(const StartMessage& start, Setup setup, InputDevices
   options.recorder = recorder_.get();
   if (recorder_ && start.exam) recorder_->record_event({0, 0.0, "exam", -1, 1.0, "-"});
   colours_ = std::make_shared<WallColours>(setup.model);
-  const auto guides = start.exam || !setup.task.needle ? std::vector<StitchGuide>() : stitch_guides(setup.model->description.tissue, setup.model->description.needle, setup.task.needle->lapses);
+  const auto marks = setup.task.needle ? eye_marks(setup.task.needle->goals, setup.model->description.tissue) : std::vector<StitchGuide>();
+  const auto guides = !marks.empty() ? marks : start.exam || !setup.task.needle ? std::vector<StitchGuide>() : stitch_guides(setup.model->description.tissue, setup.model->description.needle, setup.task.needle->lapses);
   options.show = [server = server_.get(), stream = stream_.get(), colours = colours_](const LiveView& v) {
     if (stream) stream->send_all(v.observation);
     TaskView task = task_view_of(v.status);

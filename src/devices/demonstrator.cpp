@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "devices/sample_faults.h"
+
 namespace filum {
 
 Demonstrator::Demonstrator(const std::string& path) : Demonstrator(PoseScript::load(path)) {}
@@ -9,6 +11,31 @@ Demonstrator::Demonstrator(const std::string& path) : Demonstrator(PoseScript::l
 Demonstrator::Demonstrator(PoseScript script)
     : script_(std::move(script)), name_("demonstrator: " + script_.title()) {
   for (int tool = 0; tool < kMaxTools; ++tool) moved_ += script_.has_tool(tool) ? 1u : 0u;
+}
+
+bool Demonstrator::look(PoseTrack& track) {
+  const PoseLook& look = *track.next_look();
+  Pose X_WF, X_AT;
+  if (eyes_ == nullptr || !eyes_->find(look.at, X_WF)) return false;
+  if (look.bring) {
+    Pose X_WA, X_WT;
+    if (!eyes_->find({.kind = Look::Kind::needle, .length = *look.bring, .holder = track.tool()}, X_WA)) return false;
+    if (!eyes_->find({.kind = Look::Kind::tool, .index = track.tool()}, X_WT)) return false;
+    X_AT = X_WA.inverse() * X_WT;
+  }
+  track.set_out(X_WF, X_AT);
+  return true;
+}
+
+/// The first tool that looks in vain at time t [s] of the script, -1 if none does.
+int Demonstrator::blocked_at(double t) {
+  for (int tool = 0; tool < kMaxTools; ++tool) {
+    if (!script_.has_tool(tool)) continue;
+    PoseTrack& track = script_.track(tool);
+    while (track.next_look() != nullptr && track.look_time() <= t + 1e-9)
+      if (!look(track)) return tool;
+  }
+  return -1;
 }
 
 void Demonstrator::poll(std::int64_t now_us, std::vector<DeviceSample>& out) noexcept {
@@ -20,16 +47,21 @@ void Demonstrator::poll(std::int64_t now_us, std::vector<DeviceSample>& out) noe
     next_us_ += (due - room) * kPeriod;
   }
   for (; next_us_ <= now_us; next_us_ += kPeriod) {
+    const double t = static_cast<double>(next_us_ - waited_us_) * 1e-6;
+    const int blocked = blocked_at(t);
     for (int tool = 0; tool < kMaxTools; ++tool) {
       if (!script_.has_tool(tool)) continue;
-      DeviceSample sample = script_.at(tool, static_cast<double>(next_us_) * 1e-6);
+      DeviceSample sample = script_.at(tool, t);
       sample.host_time_us = sample.device_time_us = next_us_;
       sample.sequence = static_cast<std::uint32_t>(next_us_ / kPeriod);
+      if (tool == blocked) sample.buttons |= kNotSeen;
       out.push_back(sample);
       ++health_.received;
     }
+    waiting_us_ = blocked < 0 ? 0 : waiting_us_ + kPeriod;
+    if (blocked >= 0) waited_us_ += kPeriod;
   }
-  const bool over = static_cast<double>(now_us) * 1e-6 > script_.duration();
+  const bool over = static_cast<double>(now_us - waited_us_) * 1e-6 > script_.duration() || waiting_us_ > kPatience;
   health_.state = over ? DeviceState::finished : DeviceState::live;
 }
 

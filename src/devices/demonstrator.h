@@ -1,6 +1,8 @@
 #pragma once
 // Plays a scripted demonstration (pose_script.h) as a device: one sample a tool at every millisecond of scene
-// time, so that what a step is driven by does not depend on when poll() happened to be called.
+// time, so that what a step is driven by does not depend on when poll() happened to be called. Keys given in the frame of something seen
+// are looked for when the hand sets out; while it is not there, the script's clock stands still for all hands, the samples of the one that
+// looks for it say so (kNotSeen), and after ten seconds the demonstration is over.
 
 #include <string>
 #include <vector>
@@ -21,12 +23,20 @@ class Demonstrator final : public Device {
   void poll(std::int64_t now_us, std::vector<DeviceSample>& out) noexcept override;
   DeviceHealth health() const noexcept override { return health_; }
   const PoseScript& script() const noexcept { return script_; }
+  /// What the hands see by; must outlive the calls of poll(), which read it.
+  void look_through(const Eyes* eyes) noexcept { eyes_ = eyes; }
 
  private:
-  static constexpr std::int64_t kPeriod = 1000;  // [us]
+  static constexpr std::int64_t kPeriod = 1000;            // [us]
+  static constexpr std::int64_t kPatience = 10'000'000;    // [us]
+
+  int blocked_at(double t);
+  bool look(PoseTrack& track);
 
   PoseScript script_;
   std::string name_;
+  const Eyes* eyes_ = nullptr;
+  std::int64_t waited_us_ = 0, waiting_us_ = 0;  // [us], in all; since when nothing was found, in a row
   std::int64_t next_us_ = 0;  // [us], scene time of the next sample
   std::uint64_t moved_ = 0;   // tools the script moves
   DeviceHealth health_;

@@ -18,7 +18,13 @@
 //       - { t: 3 s, arc: { centre: [0 mm, 0 mm, 5 mm], axis: [0, 1, 0], turns: -1.25, rise: 1 mm } }
 // A key without p, handle, opening or grip keeps that of the key before. A grip below zero squeezes beyond
 // closure. grip_force is optional, for all keys of a tool or none. An arc key without p ends where its turns,
-// radius (default: unchanged) and rise (default: 0) lead. A tool may have `tremor: { rms: 60 um, frequency: 9 Hz, width: 2 Hz }`.
+// radius (default: unchanged) and rise (default: 0) lead. A key may be given in the frame of what is seen at the moment the hand sets out
+// for it, and so are those after it until the next `at` (sight.h says which way the axes point; `at: {}` is the scene again):
+//       - { t: 4 s, at: { needle: 3.4 mm }, p: [2 mm, 0 mm, 0 mm], handle: [0, 0, 1], opening: [1, 0, 0] }
+//   at: { needle: ARC from the swage } { thread: LENGTH, from: swage | end } { entry: N } { exit: N } { tool: N }; N as in "the first way
+//   through the tissue" from 1, tools from 0. With `axes: scene` the place is seen and directions stay the scene's; with `bring: ARC` the
+//   keys are poses of the needle there (opening: outwards, handle: its normal), and the tool carries it as it then holds it.
+// A tool may have `tremor: { rms: 60 um, frequency: 9 Hz, width: 2 Hz }`.
 
 namespace filum {
 namespace {
@@ -46,13 +52,41 @@ Vec3 read_direction(const YamlNode& node, const std::string& key) {
   return direction.normalized();
 }
 
+/// `at: { ... }` of a key.
+PoseLook read_look(const YamlNode& node, int tool) {
+  static const std::pair<const char*, Look::Kind> kKinds[] = {{"needle", Look::Kind::needle}, {"thread", Look::Kind::thread}, {"entry", Look::Kind::entry},
+                                                              {"exit", Look::Kind::exit},     {"tool", Look::Kind::tool}};
+  static const std::string kWords[] = {"needle", "thread", "entry", "exit", "tool", "from", "axes", "bring"};
+  for (const std::string& key : node.keys())
+    if (std::find(std::begin(kWords), std::end(kWords), key) == std::end(kWords)) node.refuse(key, "needle, thread, entry, exit or tool, with from, axes, bring");
+  PoseLook look;
+  for (const auto& [name, kind] : kKinds) {
+    if (!node.has(name)) continue;
+    if (look.at.kind != Look::Kind::scene) node.refuse(name, "one of needle, thread, entry, exit, tool");
+    look.at.kind = kind;
+    if (kind == Look::Kind::needle || kind == Look::Kind::thread)
+      look.at.length = node.quantity(name, "m", Range::between(0.0, 1.0));
+    else if (kind == Look::Kind::tool)
+      look.at.index = node.integer(name, 0, kMaxTools - 1);
+    else
+      look.at.index = node.integer(name, 1, 40) - 1;
+  }
+  if (look.at.kind == Look::Kind::thread) look.at.from_end = node.choice("from", {"swage", "end"}) == "end";
+  if (node.has("axes")) look.at.scene_axes = node.choice("axes", {"scene"}) == "scene";
+  if (node.has("bring")) look.bring = node.quantity("bring", "m", Range::between(0.0, 0.05));
+  if (look.bring && look.at.kind == Look::Kind::tool && look.at.index == tool) node.refuse("tool", "another tool than the one that brings the needle");
+  return look;
+}
+
 /// Reads the keys of one tool; handle and opening are kept as written so that a key may change one of them.
 class KeyReader {
  public:
+  explicit KeyReader(int tool) : tool_(tool) {}
   PoseKey read(const YamlNode& node, bool first) {
     PoseKey key;
     key.t = node.quantity("t", "s", Range::between(0.0, 3600.0));
     if (!first && !(key.t > last_.t)) node.refuse("t", "later than the key before");
+    read_place(node, first, key);
     read_tip(node, first, key);
     read_direction_pair(node, first);
     key.q = orientation(node);
@@ -71,13 +105,29 @@ class KeyReader {
     return key;
   }
   bool has_force() const { return has_force_; }
+  std::vector<PoseLook> looks() const { return looks_; }
 
  private:
   static constexpr Range kAngles = {-std::numbers::pi / 6, std::numbers::pi / 2, false};
 
+  void read_place(const YamlNode& node, bool first, PoseKey& key) {
+    key.look = first ? -1 : last_.look;
+    if (!node.has("at")) return;
+    if (first) node.refuse("at", "none on the first key: the hand looks at the key before");
+    const PoseLook look = read_look(node.map("at"), tool_);
+    for (const char* field : {"p", "handle", "opening"})
+      if (!node.has(field)) node.refuse(field, "p, handle and opening beside at: those of the key before are in another frame");
+    if (node.has("arc")) node.refuse("arc", "none beside at: it would start in another frame");
+    key.look = -1;
+    if (look.at.kind == Look::Kind::scene && !look.bring) return;
+    key.look = static_cast<int>(looks_.size());
+    looks_.push_back(look);
+  }
+
   void read_tip(const YamlNode& node, bool first, PoseKey& key) const {
     if (first && node.has("arc"))
       node.refuse("arc", "none on the first key: an arc starts at the key before");
+    if (node.has("arc") && key.look >= 0 && looks_.back().bring) node.refuse("arc", "none where a needle is brought: p is not the jaws' tip");
     if (first || node.has("p")) key.p_W = node.vec3("p", "m");
     if (!first && !node.has("p")) key.p_W = last_.p_W;
     if (!first && node.has("arc")) read_arc(node, key);
@@ -126,6 +176,8 @@ class KeyReader {
     return Quat(R).normalized();
   }
 
+  int tool_;
+  std::vector<PoseLook> looks_;
   PoseKey last_;
   Vec3 handle_ = Vec3::UnitZ(), opening_ = Vec3::UnitX();
   bool has_force_ = false;
@@ -133,11 +185,11 @@ class KeyReader {
 
 PoseTrack read_tool(const YamlNode& node) {
   const int tool = node.integer("tool", 0, kMaxTools - 1);
-  KeyReader reader;
+  KeyReader reader(tool);
   std::vector<PoseKey> keys;
   for (const YamlNode& item : node.items("keys")) keys.push_back(reader.read(item, keys.empty()));
   if (keys.empty()) node.refuse("keys", "at least one key");
-  PoseTrack track(tool, std::move(keys), reader.has_force());
+  PoseTrack track(tool, std::move(keys), reader.has_force(), reader.looks());
   if (node.has("tremor")) {
     const YamlNode tremor = node.map("tremor");
     track.shake({tremor.quantity("rms", "m", {0.0, 1e-3, false}), tremor.quantity("frequency", "Hz", {1.0, 30.0, false}),

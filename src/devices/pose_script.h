@@ -1,7 +1,7 @@
 #pragma once
 // A scripted demonstration: for each tool a list of keys (time, jaw tip, handle direction, grip) read from a
 // file of format filum-demonstration/1. It moves device poses and grip and nothing else; the format is
-// described in pose_script.cpp.
+// described in pose_script.cpp. Keys may be given relative to what the hand sees when it sets out for them (sight.h, demonstrator.h).
 
 #include <array>
 #include <optional>
@@ -33,6 +33,7 @@ class PoseScript {
   const std::string& say(int tool, double t) const noexcept;
   /// The keys of a tool that the script moves.
   const PoseTrack& track(int tool) const { return *tracks_.at(static_cast<std::size_t>(tool)); }
+  PoseTrack& track(int tool) { return *tracks_.at(static_cast<std::size_t>(tool)); }
 
  private:
   explicit PoseScript(const YamlNode& file);

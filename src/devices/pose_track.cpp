@@ -58,8 +58,21 @@ Vec3 arc_point(const PoseArc& arc, const Vec3& p0, const Vec3& p1, double s) noe
   return arc.centre_W + ((1.0 - s) * h0 + s * h1) * arc.axis_W + radius * direction;
 }
 
-PoseTrack::PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force)
-    : tool_(tool), keys_(std::move(keys)), has_grip_force_(has_grip_force) {
+PoseTrack::PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force, std::vector<PoseLook> looks)
+    : tool_(tool), keys_(std::move(keys)), looks_(std::move(looks)), has_grip_force_(has_grip_force) {
+  // The hand looks at rest, so that what it did before does not depend on what it will see.
+  for (std::size_t i = 0; i + 1 < keys_.size(); ++i) keys_[i].stop = keys_[i].stop || keys_[i + 1].look != keys_[i].look;
+  written_ = keys_;
+  for (std::size_t i = 1; i < keys_.size(); ++i) {
+    if (keys_[i].look < 0) continue;
+    keys_[i].p_W = keys_[i - 1].p_W;
+    keys_[i].q = keys_[i - 1].q;
+    keys_[i].arc.reset();
+  }
+  smooth();
+}
+
+void PoseTrack::smooth() {
   const std::size_t n = keys_.size();
   std::vector<bool> stop(n), tip_rest(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -73,8 +86,35 @@ PoseTrack::PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force)
   const auto z = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.p_W.z(); }), tip_rest);
   angle_slopes_ = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.grip_angle; }), stop);
   force_slopes_ = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.grip_force; }), stop);
-  tip_slopes_.reserve(n);
+  tip_slopes_.clear();
   for (std::size_t i = 0; i < n; ++i) tip_slopes_.emplace_back(x[i], y[i], z[i]);
+}
+
+std::size_t PoseTrack::first_of(std::size_t look) const noexcept {
+  std::size_t i = 0;
+  while (i < keys_.size() && keys_[i].look != static_cast<int>(look)) ++i;
+  return i;
+}
+
+double PoseTrack::look_time() const noexcept { return keys_[first_of(taken_) - 1].t; }
+
+void PoseTrack::set_out(const Pose& X_WF, const Pose& X_AT) {
+  const int look = static_cast<int>(taken_);
+  std::size_t i = first_of(taken_++);
+  for (; i < keys_.size() && keys_[i].look == look; ++i) {
+    const Pose X_WT = X_WF * Pose{written_[i].p_W, written_[i].q} * X_AT;
+    keys_[i].p_W = X_WT.p;
+    keys_[i].q = X_WT.q.normalized();
+    keys_[i].arc = written_[i].arc;
+    if (!keys_[i].arc) continue;
+    keys_[i].arc->centre_W = X_WF * written_[i].arc->centre_W;
+    keys_[i].arc->axis_W = X_WF.q * written_[i].arc->axis_W;
+  }
+  for (; i < keys_.size() && keys_[i].look >= 0; ++i) {  // not seen yet
+    keys_[i].p_W = keys_[i - 1].p_W;
+    keys_[i].q = keys_[i - 1].q;
+  }
+  smooth();
 }
 
 std::size_t PoseTrack::key_at(double t) const noexcept {

@@ -11,6 +11,7 @@
 #include "base/pose.h"
 #include "devices/device.h"
 #include "devices/hand_tremor.h"
+#include "devices/sight.h"
 
 namespace filum {
 
@@ -32,6 +33,13 @@ struct PoseKey {
   bool stop = false;           // velocity is zero here
   std::optional<PoseArc> arc;  // how the tip gets here from the key before
   std::string say;             // told to the trainee from here to the next key that says something
+  int look = -1;               // of the track's looks, in whose frame pose and arc are; -1 the scene
+};
+
+/// What the hand looks at when it sets out for the first of the keys given in its frame, that is at the key before.
+struct PoseLook {
+  Look at;
+  std::optional<double> bring;  // [m], arc of the needle: the keys are poses of the needle there, and the tool carries it as it then holds it
 };
 
 /// Point at fraction s of the arc from p0 to p1 (both [m], frame W).
@@ -47,10 +55,17 @@ Vec3 arc_end(const PoseArc& arc, const Vec3& p0, double radius, double rise) noe
 /// Distance of a point from the arc's axis [m].
 double axis_distance(const PoseArc& arc, const Vec3& p) noexcept;
 
-/// Immutable once built; at() allocates nothing. Keys must be non-empty with strictly growing times.
+/// Keys must be non-empty with strictly growing times. at() allocates nothing. A key whose look has not been taken yet stays where the
+/// hand then stands, at rest.
 class PoseTrack {
  public:
-  PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force);
+  PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force, std::vector<PoseLook> looks = {});
+
+  /// The next look to be taken, null if there is none (left), and when [s].
+  const PoseLook* next_look() const noexcept { return taken_ < looks_.size() ? &looks_[taken_] : nullptr; }
+  double look_time() const noexcept;
+  /// Takes it: X_WF is the frame seen; X_AT the tool in the frame of the needle it brings, identity if it brings none.
+  void set_out(const Pose& X_WF, const Pose& X_AT);
 
   /// Adds a tremor to the tip from now on.
   void shake(const HandTremor& tremor) { tremor_ = tremor; }
@@ -64,10 +79,15 @@ class PoseTrack {
 
  private:
   DeviceSample steady_at(double t) const noexcept;
+  std::size_t first_of(std::size_t look) const noexcept;
+  void smooth();
   Vec3 tip_in_segment(std::size_t i, double u) const noexcept;
 
   int tool_;
-  std::vector<PoseKey> keys_;
+  std::vector<PoseKey> keys_;          // those of looks not taken yet rest where the hand is
+  std::vector<PoseKey> written_;       // as read, in their frames
+  std::vector<PoseLook> looks_;
+  std::size_t taken_ = 0;              // looks
   bool has_grip_force_;
   std::optional<HandTremor> tremor_;
   std::vector<Vec3> tip_slopes_;      // [m/s]

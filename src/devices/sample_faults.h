@@ -12,5 +12,6 @@ inline constexpr std::uint32_t kForceSaturated = 0x200;
 inline constexpr std::uint32_t kAngleBroken = 0x400;    // wire broken or shorted
 inline constexpr std::uint32_t kForceBroken = 0x800;
 inline constexpr std::uint32_t kForeignCalibration = 0x1000;  // the handle says it was calibrated, but not by the file in use
+inline constexpr std::uint32_t kNotSeen = 0x2000;      // of a demonstration: what the hand reaches for is not there, it waits
 
 }  // namespace filum

@@ -12,6 +12,7 @@ namespace filum {
 namespace {
 
 constexpr double kRound = 3e-3;     // [m], how far from what is aimed at
+constexpr double kReach = 60e-3;     // [m], of hands, as the pointer's
 constexpr double kFarthest = 0.5;   // [m], from where the scene is: what blows up goes further
 constexpr double kFastest = 20.0;   // [m/s]: a 10-0 thread stretched to its strength and let go stays below
 constexpr double kSwage = 20e-6;    // [m], between thread and needle
@@ -62,11 +63,12 @@ void WildHands::aim(Hand& hand, const Observation& o) {
   hand.from = hand.to;
   hand.to.p = somewhere(o);
   if ((hand.to.p - hand.from.p).norm() > 30e-3) hand.to.p = hand.from.p + 30e-3 * (hand.to.p - hand.from.p).normalized();  // a thread that flies is not chased
+  for (int c = 0; c < 3; ++c) hand.to.p[c] = std::clamp(hand.to.p[c], -kReach, kReach);  // else hands and what they drag along wander off in minutes
   if (rng_.uniform() < 0.5) hand.to.q = rng_.rotation();
   const double speed = rng_.uniform(0.1, 1.0) * kWildSpeed;
   hand.steps = hand.left = std::max(1, static_cast<int>((hand.to.p - hand.from.p).norm() / (speed * dt_)));
   hand.grip = rng_.uniform() < 0.5 ? 0.2 : -0.1;
-  hand.buttons = rng_.uniform() < 0.2 ? static_cast<std::uint32_t>(rng_.below(8)) : 0;
+  hand.buttons = rng_.uniform() < 0.2 ? static_cast<std::uint32_t>(rng_.below(32)) : 0;
   hand.silent = rng_.uniform() < 0.05 ? 60 : 0;
 }
 

@@ -11,7 +11,7 @@ namespace filum {
 namespace {
 
 /// Distance from q to the wall of a part, its held end left out; 0 within the wall: edges pressed together are closed.
-double distance_to(const VesselMesh& mesh, const Points& x, int part, const Vec3& q, Vec3& nearest) {
+double distance_to(const VesselMesh& mesh, const Points& x, int part, const Vec3& q, Vec3& nearest) noexcept {
   double least = std::numeric_limits<double>::infinity(), facing = 0.0;
   bool inside = false;
   for (const WallFace& f : mesh.faces) {
@@ -31,27 +31,8 @@ double distance_to(const VesselMesh& mesh, const Points& x, int part, const Vec3
   return inside ? 0.0 : least;
 }
 
-/// Least gap over the thickness of the edge at one node of the ring, with the middle of it.
-struct EdgeGap {
-  double gap, depth;
-  Vec3 place, node;
-};
-
-EdgeGap gap_at(const VesselMesh& mesh, const Points& x, int b, int inner, int outer) {
-  EdgeGap g{std::numeric_limits<double>::infinity(), (x.col(outer) - x.col(inner)).norm(), Vec3::Zero(), x.col(inner)};
-  for (const double share : {0.0, 0.5, 1.0}) {
-    const Vec3 q = (1.0 - share) * x.col(inner) + share * x.col(outer);
-    Vec3 nearest = q;
-    const double d = distance_to(mesh, x, b, q, nearest);
-    if (d >= g.gap) continue;
-    g.gap = d;
-    g.place = 0.5 * (q + nearest);
-  }
-  return g;
-}
-
 /// The outer end of the line through the wall that starts at an inner rim node.
-int outer_of(const VesselMesh& mesh, int inner) {
+int outer_of(const VesselMesh& mesh, int inner) noexcept {
   int node = inner;
   for (bool moved = true; moved;) {
     moved = false;
@@ -73,49 +54,74 @@ double slit_speed(double gap, double depth, const BloodOptions& o) noexcept {
   return 2.0 * o.pressure / (b + std::sqrt(b * b + 4.0 * a * o.pressure));
 }
 
-JoinLeak find_leak(const VesselMesh& mesh, const Points& x, int a, int b, int sectors, const BloodOptions& blood) {
+EdgeGap edge_gap(const VesselMesh& mesh, const Points& x, int a, int b, std::size_t k) noexcept {
   const std::vector<int>& ring = mesh.edge_ring[static_cast<std::size_t>(a)];
-  std::vector<EdgeGap> gaps;
-  for (const int i : ring) gaps.push_back(gap_at(mesh, x, b, i, outer_of(mesh, i)));
-  JoinLeak leak;
-  leak.sectors.resize(static_cast<std::size_t>(sectors));
-  std::vector<double> widest(leak.sectors.size(), -1.0);
+  const int inner = ring[k], next = ring[(k + 1) % ring.size()], outer = outer_of(mesh, inner);
+  EdgeGap g{std::numeric_limits<double>::infinity(), (x.col(outer) - x.col(inner)).norm(), (x.col(next) - x.col(inner)).norm(), Vec3::Zero()};
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const Vec3 q = (1.0 - share) * x.col(inner) + share * x.col(outer);
+    Vec3 nearest = q;
+    const double d = distance_to(mesh, x, b, q, nearest);
+    if (d >= g.gap) continue;
+    g.gap = d;
+    g.place = 0.5 * (q + nearest);
+  }
+  return g;
+}
+
+double leak_through(std::span<const EdgeGap> gaps, std::span<LeakSector> sectors, const BloodOptions& blood) noexcept {
+  std::fill(sectors.begin(), sectors.end(), LeakSector{});
+  LeakSector nowhere;
+  double whole = 0.0, widest = -1.0;
+  std::size_t last = sectors.size();
   for (std::size_t k = 0; k < gaps.size(); ++k) {
     const EdgeGap &here = gaps[k], &next = gaps[(k + 1) % gaps.size()];
-    const std::size_t number = k * leak.sectors.size() / gaps.size();
-    LeakSector& s = leak.sectors[number];
-    const double ds = (next.node - here.node).norm(), gap = 0.5 * (here.gap + next.gap), depth = 0.5 * (here.depth + next.depth);
-    s.length += ds;
-    s.gap += gap * ds;
-    if (gap > blood.seal) s.area += gap * ds;
-    s.flow += slit_speed(gap, depth, blood) * gap * ds;
-    if (gap <= widest[number]) continue;
-    widest[number] = gap;
+    const std::size_t number = k * sectors.size() / gaps.size();
+    LeakSector& s = sectors.empty() ? nowhere : sectors[number];
+    const double gap = 0.5 * (here.gap + next.gap), depth = 0.5 * (here.depth + next.depth), flow = slit_speed(gap, depth, blood) * gap * here.length;
+    s.length += here.length;
+    s.gap += gap * here.length;
+    if (gap > blood.seal) s.area += gap * here.length;
+    s.flow += flow;
+    whole += flow;
+    if (number == last && gap <= widest) continue;
+    last = number;
+    widest = gap;
     s.place = 0.5 * (here.place + next.place);
   }
-  for (LeakSector& s : leak.sectors) {
-    s.gap /= std::max(s.length, 1e-30);
-    leak.area += s.area;
-    leak.flow += s.flow;
-  }
+  for (LeakSector& s : sectors) s.gap /= std::max(s.length, 1e-30);
+  return whole;
+}
+
+JoinLeak find_leak(const VesselMesh& mesh, const Points& x, int a, int b, int sectors, const BloodOptions& blood) {
+  std::vector<EdgeGap> gaps;
+  for (std::size_t k = 0; k < mesh.edge_ring[static_cast<std::size_t>(a)].size(); ++k) gaps.push_back(edge_gap(mesh, x, a, b, k));
+  JoinLeak leak;
+  leak.sectors.resize(static_cast<std::size_t>(sectors));
+  leak.flow = leak_through(gaps, leak.sectors, blood);
+  for (const LeakSector& s : leak.sectors) leak.area += s.area;
   return leak;
 }
 
-std::vector<LumenRing> lumen_rings(const VesselMesh& mesh, const Points& x, int part) {
-  std::vector<std::vector<int>> nodes;  // of each slab, ascending: in the order of the ring
-  int first = -1;
+std::vector<std::vector<int>> inner_rings(const VesselMesh& mesh, int part) {
   std::vector<char> inner(static_cast<std::size_t>(mesh.n_nodes()), 0);
   for (const WallFace& f : mesh.faces)
     if (f.surface == WallSurface::inner && mesh.part[static_cast<std::size_t>(f.element)] == part)
       for (const int c : f.corner) inner[static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(f.element)][static_cast<std::size_t>(c)])] = 1;
-  for (int i = 0; i < mesh.n_nodes(); ++i) {
+  std::vector<std::vector<int>> rings;
+  int slab = -1;
+  for (int i = 0; i < mesh.n_nodes(); ++i) {  // of each slab, ascending: in the order of the ring
     if (!inner[static_cast<std::size_t>(i)]) continue;
-    if (first < 0) first = mesh.slab[static_cast<std::size_t>(i)];
-    nodes.resize(static_cast<std::size_t>(mesh.slab[static_cast<std::size_t>(i)] - first + 1));
-    nodes.back().push_back(i);
+    if (mesh.slab[static_cast<std::size_t>(i)] != slab) rings.emplace_back();
+    slab = mesh.slab[static_cast<std::size_t>(i)];
+    rings.back().push_back(i);
   }
+  return rings;
+}
+
+std::vector<LumenRing> lumen_rings(const VesselMesh& mesh, const Points& x, int part) {
   std::vector<LumenRing> rings;
-  for (const auto& ring : nodes) {
+  for (const auto& ring : inner_rings(mesh, part)) {
     LumenRing r;
     for (const int i : ring) r.middle += x.col(i) / static_cast<double>(ring.size());
     Vec3 area = Vec3::Zero();

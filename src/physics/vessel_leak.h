@@ -9,6 +9,7 @@
 //   Flow     Poiseuille resistances of the rings in series, 8 pi mu L / A^2, beside the rest of the circulation.
 // Neglects: pulsation, clotting, entrance losses of the lumen, the thread's own hole. Test: vessel_leak_test.
 
+#include <span>
 #include <vector>
 
 #include "physics/vessel_mesh.h"
@@ -41,9 +42,22 @@ struct JoinLeak {
   double flow = 0.0;           // [m3/s]
 };
 
+/// The gap at one node of a cut edge, and what of the edge it stands for.
+struct EdgeGap {
+  double gap = 0.0, depth = 0.0, length = 0.0;  // [m]; length: to the next node
+  Vec3 place = Vec3::Zero();   // [m], middle of the gap
+};
+
+/// At node `k` of the cut edge of part `a` against the wall of part `b`. Allocates nothing.
+EdgeGap edge_gap(const VesselMesh& mesh, const Points& x, int a, int b, std::size_t k) noexcept;
+/// Flow [m3/s] through gaps in the order of the edge's nodes; fills as many sectors as it is given, of equal numbers of nodes. Allocates nothing.
+double leak_through(std::span<const EdgeGap> gaps, std::span<LeakSector> sectors, const BloodOptions& blood) noexcept;
+
 /// The join of the cut edge of part `a` with the wall of part `b`, in so many sectors of equal numbers of nodes.
 JoinLeak find_leak(const VesselMesh& mesh, const Points& x, int a, int b, int sectors, const BloodOptions& blood);
 
+/// Nodes of the inner surface of a part, ring by ring from its clamp to the cut edge.
+std::vector<std::vector<int>> inner_rings(const VesselMesh& mesh, int part);
 struct LumenRing {
   double area = 0.0;           // [m2]
   Vec3 middle = Vec3::Zero();  // [m]

@@ -27,7 +27,8 @@ json task_info_json(const TaskInfoView& task) {
           {"summary", task.summary},
           {"demonstration", task.demonstration},
           {"picture", task.name},
-          {"dial", task.dial}};
+          {"dial", task.dial},
+          {"shown", task.shown}};
 }
 
 json device_json(const DeviceView& d) {

@@ -1,5 +1,7 @@
 #include "server/encode_needle.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -43,6 +45,42 @@ const char* word(PassObservation::State state) {
   return "open";
 }
 
+/// null without clamps; the gaps' places only where something comes out.
+void append_blood(std::string& out, const BloodObservation& b) {
+  if (!b.present) {
+    out += "null";
+    return;
+  }
+  constexpr double kMlPerMin = 60e6, kMmHg = 133.322;
+  out += "{\"clamps\":[";
+  for (std::size_t k = 0; k < b.off.size(); ++k) {
+    const Quat& q = b.clamp_W[k].q;
+    const double wxyz[4] = {q.w(), q.x(), q.y(), q.z()};
+    out += k > 0 ? ",{\"position\":" : "{\"position\":";
+    append(out, b.clamp_W[k].p.data(), 3, 6);
+    out += ",\"quaternion\":";
+    append(out, wxyz, 4, 6);
+    out.append(",\"off\":").append(b.off[k] ? "true}" : "false}");
+  }
+  const std::array<double, 2> pressure = {b.pressure[0] / kMmHg, b.pressure[1] / kMmHg};
+  std::array<double, kLeakSectors> leak{};
+  std::transform(b.leak.begin(), b.leak.end(), leak.begin(), [](double q) { return kMlPerMin * q; });
+  const double share = b.lumen_length > 0.0 ? 1.0 / b.lumen_length : 0.0;
+  const std::array<double, 2> flow = {kMlPerMin * b.through, 1e6 * b.lost}, empty = {share * b.empty_from, share * b.empty_to};
+  const auto numbers = [&out](const char* key, const double* x, int n) {
+    out.append(",\"").append(key).append("\":");
+    append(out, x, n, 5);
+  };
+  out += "]";
+  numbers("pressure", pressure.data(), 2);
+  numbers("leak", leak.data(), kLeakSectors);
+  numbers("place", b.place[0].data(), 3 * kLeakSectors);
+  numbers("empty", empty.data(), 2);
+  static constexpr std::array<const char*, 4> kMilking = {"none", "stripping", "filling", "over"};
+  out.append(",\"through\":").append(json(flow[0]).dump()).append(",\"lost\":").append(json(flow[1]).dump());
+  out.append(",\"milking\":\"").append(kMilking[static_cast<std::size_t>(b.milking)]).append("\"}");
+}
+
 }  // namespace
 
 json needle_scene_json(const NeedleDescription& n) {
@@ -56,7 +94,7 @@ json tissue_scene_json(const TissueDescription& t) {
   for (const auto& corners : t.triangles)
     for (const int i : corners) triangles.push_back(i);
   for (Eigen::Index k = 0; k < t.rest.size(); ++k) rest.push_back(std::round(t.rest.data()[k] * 1e8) / 1e8);
-  return {{"name", t.name}, {"kind", t.kind}, {"thickness", t.thickness}, {"triangles", triangles}, {"rest", rest}};
+  return {{"name", t.name}, {"kind", t.kind}, {"thickness", t.thickness}, {"radius", t.radius}, {"clamp_reach", t.clamp_reach}, {"triangles", triangles}, {"rest", rest}};
 }
 
 json guide_json(const StitchGuide& guide) { return {{"in", place_json(guide.in)}, {"out", place_json(guide.out)}}; }
@@ -87,7 +125,9 @@ std::string tissue_frame_text(const TissueObservation& t) {
     else out += "null";
     out += "}";
   }
-  return out + "]}";
+  out += "],\"blood\":";
+  append_blood(out, t.blood);
+  return out + "}";
 }
 
 std::string overlay_text(const OverlayView& overlay) {

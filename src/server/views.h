@@ -13,6 +13,7 @@ struct TaskInfoView {
   std::string name, title, summary;
   bool demonstration = false;  // shown by the demonstrator only
   bool dial = false;           // the stiffness of its tissue can be turned
+  bool shown = true;           // there is a demonstration of it
 };
 
 struct DeviceView {

@@ -43,6 +43,9 @@ struct Stitch {
   double depth = 0.0;             // share of the thickness, the least of both sides
   double position = 0.0;          // [m], along the cut
   double tension = 0.0, peak_force = 0.0, torn = 0.0;  // [N], [N], [m]
+  std::string knot;               // its class (knot_classifier.h), empty: the stitch is not tied
+  int throws = 0;
+  double tail = std::numeric_limits<double>::quiet_NaN();  // [m]
 };
 
 struct Lapse {

@@ -11,14 +11,17 @@
 namespace filum {
 
 struct NeedleGoal {
-  enum class Kind { pick, load, present, pass, draw } kind = Kind::pick;
+  enum class Kind { pick, load, present, pass, draw, eye, tie, cut } kind = Kind::pick;
   int tool = 0;
   double low = 0.0, high = 1.0;   // load: where on the needle, share of its length from the swage
   double angle = 0.0;             // [rad], load: largest deviation from a right angle between wire and handle
-  Vec3 at = Vec3::Zero();         // [m], present, frame W
-  double within = 0.0;            // [m], present
-  double seconds = 0.0;           // [s], load and present: kept so long
-  int passes = 0;                 // pass, draw: ways through the tissue
+  Vec3 at = Vec3::Zero();         // [m], present, frame W; eye: mark where the needle goes into the card at rest
+  Vec3 out = Vec3::Zero();        // [m], eye: mark where it comes out
+  double within = 0.0;            // [m], present; eye: of both marks, seen from above
+  double seconds = 0.0;           // [s], load, present and tie: kept so long
+  int passes = 0;                 // pass, draw, tie: ways through the tissue
+  int throws = 0;                 // tie: at least
+  double loop = 0.0;              // [m], tie: thread in bites and knot at most
   double tail = 0.0;              // [m], draw: thread left before the first entry
 };
 

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <string_view>
 
+#include "training/stitch_knot.h"
+
 namespace filum {
 namespace {
 
@@ -21,7 +23,7 @@ int passes_done(const TissueObservation& t) {
 
 NeedleGoal parse_needle_goal(const YamlNode& node) {
   NeedleGoal g;
-  const std::string kind = node.choice("kind", {"pick", "load", "present", "pass", "draw"});
+  const std::string kind = node.choice("kind", {"pick", "load", "present", "pass", "draw", "eye", "tie", "cut"});
   g.tool = node.integer_or("tool", 0, 0, 2);
   if (kind == "load") {
     g.kind = NeedleGoal::Kind::load;
@@ -33,6 +35,19 @@ NeedleGoal parse_needle_goal(const YamlNode& node) {
     g.kind = NeedleGoal::Kind::present;
     g.at = node.vec3("at", "mm");
     g.within = node.quantity("within", "mm", Range::positive());
+    g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
+  } else if (kind == "eye") {
+    g.kind = NeedleGoal::Kind::eye;
+    g.at = node.vec3("in", "mm");
+    g.out = node.vec3("out", "mm");
+    g.within = node.quantity("within", "mm", Range::positive());
+  } else if (kind == "cut") {
+    g.kind = NeedleGoal::Kind::cut;
+  } else if (kind == "tie") {
+    g.kind = NeedleGoal::Kind::tie;
+    g.passes = node.integer("passes", 1, kMaxPasses);
+    g.throws = node.integer("throws", 1, 10);
+    g.loop = node.quantity("loop", "mm", Range::positive());
     g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
   } else if (kind == "pass" || kind == "draw") {
     g.kind = kind == "pass" ? NeedleGoal::Kind::pass : NeedleGoal::Kind::draw;
@@ -88,6 +103,38 @@ bool NeedleWatch::held_only_by(const Observation& o, int tool) const {
   return true;
 }
 
+/// One way in from above and another out below it, or the first way comes out above itself: the hole that it went into and the one it came out of.
+bool NeedleWatch::through_eye(const NeedleGoal& g, const TissueObservation& t) {
+  const auto off = [](const Vec3& a, const Vec3& b) { return (a - b).head<2>().norm(); };
+  for (int k = used_; k < t.n_passes; ++k) {
+    const double in = off(t.passes[static_cast<std::size_t>(k)].entry_rest, g.at);
+    if (in > g.within) continue;
+    for (int j = k; j <= std::min(k + 1, t.n_passes - 1); ++j) {
+      const PassObservation& last = t.passes[static_cast<std::size_t>(j)];
+      const double out = off(last.exit_rest, g.out);
+      if (!last.out || out > g.within) continue;
+      used_ = j + 1;
+      square_ += in * in + out * out;
+      present_time_ += 2.0;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool NeedleWatch::tied(const NeedleGoal& g, const Observation& o) {
+  constexpr double kEvery = 0.25;  // [s]
+  if (o.time < next_knot_) return tied_;
+  next_knot_ = o.time + kEvery;
+  tied_ = false;
+  if (passes_done(o.tissue) < g.passes) return false;
+  const StitchKnot k = knot_in_tissue(o, 1);
+  if (!(k.knot.n_throws >= g.throws && k.loop() <= g.loop)) return false;
+  int held = 0;
+  for (int i = 0; i < o.tissue.n_passes; ++i) held += k.holds(o.tissue.passes[static_cast<std::size_t>(i)].arc) ? 1 : 0;
+  return tied_ = held >= g.passes;
+}
+
 bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {
   const auto tool = static_cast<std::size_t>(g.tool);
   bool now = false;
@@ -111,6 +158,8 @@ bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {
       present_time_ += dt;
       break;
     }
+    case NeedleGoal::Kind::eye:
+      return through_eye(g, o.tissue);
     case NeedleGoal::Kind::pass:
       return passes_done(o.tissue) >= g.passes;
     case NeedleGoal::Kind::draw: {
@@ -118,6 +167,11 @@ bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {
       const double tail = o.tissue.passes[0].arc;
       return tail >= 0.0 && tail <= g.tail;
     }
+    case NeedleGoal::Kind::tie:
+      now = tied(g, o);
+      break;
+    case NeedleGoal::Kind::cut:
+      return o.cut_edge_low >= 0 && o.cut_edge_high >= 0;
   }
   kept_ = now ? kept_ + dt : 0.0;
   return now && kept_ >= g.seconds;
@@ -129,6 +183,7 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
     report_.takes += name == "needle-taken" ? 1 : 0;
     report_.drops += name == "needle-dropped" ? 1 : 0;
   }
+  blood_.observe(o);
   time_ = o.time;
   tissue_.n_passes = o.tissue.n_passes;
   tissue_.soundness = o.tissue.soundness;
@@ -145,7 +200,7 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
   kept_ = 0.0;
 }
 
-NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join) const {
+NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Observation* last) const {
   NeedleReport r = report_;
   if (angle_time_ > 0.0) {
     r.angle_error = angle_sum_ / angle_time_;
@@ -156,9 +211,12 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join) const {
   if (!r.has_tissue) return r;
   r.thickness = scene_.tissue.thickness;
   r.stitches = stitches_of(tissue_, pass_time_, scene_.tissue);
+  if (last != nullptr && !r.stitches.empty()) name_knots(knot_in_tissue(*last), tissue_, r.stitches);
   r.lapses = lapses_of(task_.lapses, r.stitches, r.thickness);
   find_back_walls(task_.lapses, tissue_, pass_time_, scene_.tissue, r.stitches, r.lapses);
   r.join = join;
+  if (blood_.clamps().any()) r.clamps = blood_.clamps();
+  if (blood_.milking().tests() + blood_.milking().spoiled > 0 || !std::isnan(blood_.milking().volume)) r.milking = blood_.milking();
   if (join) {
     find_join_lapses(task_.lapses, *join, time_, r.lapses);
     find_gap_lapses(task_.lapses, *join, scene_.tissue, r.stitches, time_, r.lapses);

@@ -5,6 +5,10 @@
 //   present  the needle's point stays within reach of a place for `seconds`
 //   pass     the needle has gone right through the tissue so many times
 //   draw     the thread follows until no more than `tail` is left before the first entry
+//   eye      the needle has gone into the card at one mark and come out of it at another, on one way after the eyes before it
+//   tie      a knot of so many throws holds those ways, drawn down until no more thread is in its loop than `loop`, for `seconds`; looked at
+//            every quarter of a second
+//   cut      both ends of the thread are cut
 // Events: goal-done. Test: needle_watch_test.
 
 #include <limits>
@@ -23,7 +27,7 @@ struct NeedleReport {
   int takes = 0, drops = 0;
   double angle_error = std::numeric_limits<double>::quiet_NaN();  // [rad], mean deviation from a right angle where load was asked for
   double share = std::numeric_limits<double>::quiet_NaN();        // where it was held then
-  double present_error = std::numeric_limits<double>::quiet_NaN();  // [m], root mean square while presenting
+  double present_error = std::numeric_limits<double>::quiet_NaN();  // [m], root mean square while presenting, or of the holes' distances from their marks
   bool has_tissue = false;
   double thickness = 0.0;                // [m]
   double peak_force = 0.0;               // [N], largest pull on the tissue
@@ -32,6 +36,8 @@ struct NeedleReport {
   std::string rules;                     // title of the rules
   double soundness = 1.0;                // of the weakest element of the tissue at the end: 1 whole, 0 gone
   std::optional<JoinReport> join;        // of a vessel with the clamps off
+  std::optional<ClampReport> clamps;     // of a vessel, if the trainee took one off
+  std::optional<MilkingReport> milking;  // if it was tried
   std::shared_ptr<const RatingScale> scale;  // that raters mark it by, or none
 };
 
@@ -46,19 +52,26 @@ class NeedleWatch {
   int step() const { return step_; }
   bool done() const { return step_ == static_cast<int>(task_.goals.size()); }
   /// `join`: what the test of the join said, if there was one.
-  NeedleReport report(const std::optional<JoinReport>& join = std::nullopt) const;
+  /// `last`: the scene at the end, to name the stitches' knots by.
+  NeedleReport report(const std::optional<JoinReport>& join = std::nullopt, const Observation* last = nullptr) const;
 
  private:
   bool met(const NeedleGoal& g, const Observation& o, double dt);
+  bool through_eye(const NeedleGoal& g, const TissueObservation& t);
+  bool tied(const NeedleGoal& g, const Observation& o);
   bool held_only_by(const Observation& o, int tool) const;
 
   NeedleTask task_;
   SceneDescription scene_;
   NeedleReport report_;
   TissueObservation tissue_;             // newest passes
+  BloodWatch blood_;
   std::vector<double> pass_time_;        // [s], when each came out
   int step_ = 0;
+  int used_ = 0;                         // ways through the tissue that belong to eyes
   double kept_ = 0.0, time_ = 0.0;       // [s]
+  double next_knot_ = 0.0;               // [s], when the thread is looked at for knots again
+  bool tied_ = false;                    // then
   double angle_sum_ = 0.0, share_sum_ = 0.0, angle_time_ = 0.0, square_ = 0.0, present_time_ = 0.0;
 };
 

@@ -130,7 +130,10 @@ Json stitch_json(const Stitch& s, double thickness) {
           {"position_m", finite(s.position)},
           {"tension_n", finite(s.tension)},
           {"peak_force_n", finite(s.peak_force)},
-          {"torn_m", finite(s.torn)}};
+          {"torn_m", finite(s.torn)},
+          {"throws", s.throws},
+          {"knot", s.knot.empty() ? Json(nullptr) : Json(s.knot)},
+          {"tail_mm", finite(1e3 * s.tail)}};
 }
 
 /// Of the walls alone at a held pressure (world/join_test.h).
@@ -149,6 +152,34 @@ Json leak_json(const JoinReport& j) {
           {"thread_in_lumen_m", finite(j.thread_inside)},
           {"edge_overlap_thicknesses", finite(j.overlap)},
           {"solver_sound", j.sound}};
+}
+
+/// Clamps as the trainee took them off, beside the test at the end.
+Json clamps_json(const ClampReport& c) {
+  constexpr double kMlPerMin = 60e6, kMm2 = 1e6;
+  const char* note = c.wrong_order ? "the downstream clamp came off first: the join is filled and tried against collaterals before its artery, and the order was to be upstream first"
+                                   : "upstream first, as asked";
+  return {{"upstream_s", finite(c.upstream)},
+          {"downstream_s", finite(c.downstream)},
+          {"order_right", !c.wrong_order},
+          {"note", note},
+          {"pressure_mmhg", {finite(c.pressure[0] / kMmHg), finite(c.pressure[1] / kMmHg)}},
+          {"leak_ml_per_min", finite(kMlPerMin * c.leak)},
+          {"most_leak_ml_per_min", finite(kMlPerMin * c.most_leak)},
+          {"through_ml_per_min", finite(kMlPerMin * c.through)},
+          {"lost_ml", finite(1e6 * c.lost)},
+          {"least_lumen_before_mm2", finite(kMm2 * c.area_before)},
+          {"least_lumen_mm2", finite(kMm2 * c.area)}};
+}
+
+Json milking_json(const MilkingReport& m) {
+  return {{"tests", m.tests()},
+          {"refilled", m.refilled},
+          {"stayed_empty", m.stayed_empty},
+          {"spoiled", m.spoiled},
+          {"refill_s", finite(m.seconds)},
+          {"emptied_ml", finite(1e6 * m.volume)},
+          {"note", "a refill shows flow, not a good join: stitches that catch both walls are missed by it (clinical.md, MPT)"}};
 }
 
 /// The items of a rating scale with what the simulator estimates of them; null: left to the rater.
@@ -181,6 +212,8 @@ void add_needle(const NeedleReport& n, Json& json) {
   if (n.scale) json["scale"] = scale_json(*n.scale, n);
   json["tissue_soundness"] = finite(n.soundness);
   if (n.join) json["leak"] = leak_json(*n.join);
+  if (n.clamps) json["clamps"] = clamps_json(*n.clamps);
+  if (n.milking) json["milking"] = milking_json(*n.milking);
   const std::vector<PatencyFactor> factors = patency_factors(n);
   if (factors.empty()) return;
   json["thrombosis_factors"] = Json::array();

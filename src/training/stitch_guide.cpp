@@ -77,4 +77,12 @@ std::vector<StitchGuide> stitch_guides(const TissueDescription& t, const NeedleD
   return guides;
 }
 
+std::vector<StitchGuide> eye_marks(const std::vector<NeedleGoal>& goals, const TissueDescription& t) {
+  std::vector<StitchGuide> marks;
+  const Vec3 up = 0.5 * t.thickness * Vec3::UnitZ();
+  for (const NeedleGoal& g : goals)
+    if (g.kind == NeedleGoal::Kind::eye) marks.push_back({{g.at + up, nearest(t.rest, g.at + up), {}}, {g.out + up, nearest(t.rest, g.out + up), {}}});
+  return marks;
+}
+
 }  // namespace filum

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "training/lapse.h"
+#include "training/needle_task.h"
 #include "world/observation.h"
 
 namespace filum {
@@ -23,5 +23,8 @@ struct StitchGuide {
 
 /// Round a vessel eight, at the stays first; on a card five, 1 mm apart or as its width allows. None without tissue or needle.
 std::vector<StitchGuide> stitch_guides(const TissueDescription& tissue, const NeedleDescription& needle, const LapseRules& rules);
+
+/// Marks of a needle course, printed on its card: in and out of each eye, without a path.
+std::vector<StitchGuide> eye_marks(const std::vector<NeedleGoal>& goals, const TissueDescription& tissue);
 
 }  // namespace filum

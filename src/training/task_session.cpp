@@ -184,7 +184,7 @@ Result TaskSession::finish(const std::optional<SecurityTest>& security, const st
     r.pressure->rest = scene_.brain.rest;
     r.pressure->triangles = scene_.brain.triangles;
   }
-  if (needle_) r.needle = needle_->report(join);
+  if (needle_) r.needle = needle_->report(join, observed_ ? &last_ : nullptr);
   if (observed_ && task_.has_knot()) {
     const ThreadPart part = tied_part(last_);
     const Points nodes = last_.positions.middleCols(part.first, std::max(0, part.nodes()));

@@ -60,6 +60,7 @@ bool let_blood_in(World& world, const JoinTestOptions& o) {
   const double dt = world.description().dt;
   const int rise = static_cast<int>(std::lround(o.rise / dt)), all = 2 * rise + static_cast<int>(std::lround(o.hold / dt));
   State s = world.state();
+  s.tissue.blood = {};  // pressure is set from here on
   bool sound = true;
   for (int k = 1; k <= all; ++k) {
     for (int part = 0; part < 2; ++part)

@@ -49,6 +49,25 @@ struct PassObservation {
 };
 inline constexpr int kMaxPasses = 40;
 
+inline constexpr int kLeakSectors = 8;
+
+/// Clamps and blood of a vessel.
+struct BloodObservation {
+  bool present = false;                   // two stumps in clamps that can be taken off
+  std::array<Pose, 2> clamp_W;            // upstream, downstream: at the held end, z towards the cut, y up the clamp's arms
+  std::array<bool, 2> off{};
+  bool wrong_order = false;               // the downstream one came off first
+  std::array<double, 2> pressure{};       // [Pa], in each stump
+  std::array<double, kLeakSectors> leak{};  // [m3/s], out of the join, from where the vessel's angle is zero
+  std::array<Vec3, kLeakSectors> place{};   // [m], of the widest gap of each sector
+  double leaks = 0.0, through = 0.0;      // [m3/s], out of the join; on into what lies behind it
+  double lost = 0.0;                      // [m3], so far
+  double least_area = 0.0;                // [m2], of the lumen
+  int milking = 0;                        // 0 nothing, 1 two forceps hold it shut and strip, 2 the first has let go, 3 over
+  double empty_from = 0.0, empty_to = 0.0;  // [m], of the emptied stretch, along the lumen from the upstream clamp
+  double lumen_length = 0.0;              // [m]
+};
+
 struct TissueObservation {
   int n = 0;                              // vertices of the surface; 0: no tissue
   Points positions;                       // [m], 3 x n, frame W
@@ -56,6 +75,7 @@ struct TissueObservation {
   std::array<PassObservation, kMaxPasses> passes;
   double point_force = 0.0;               // [N], of the tissue on the needle's point
   double soundness = 1.0;                 // of the weakest element: 1 whole, 0 gone
+  BloodObservation blood;
 };
 
 struct TissueDescription {
@@ -65,6 +85,7 @@ struct TissueDescription {
   bool lumen = false;                     // two stumps of a vessel: the cut runs round an axis
   Vec3 axis = Vec3::UnitY(), middle = Vec3::Zero();  // unit; [m], between the cut edges, at rest
   double radius = 0.0;                    // [m], of the outer surface at rest
+  double clamp_reach = 0.0;               // [m], of a clamp's arm from the vessel's axis; 0: no clamps
   std::vector<std::array<int, 3>> triangles;
   Points rest;                            // [m], 3 x n
 };

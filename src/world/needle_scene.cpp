@@ -48,8 +48,8 @@ double NeedleScene::stop_angle(const InstrumentParameters& tool) const noexcept 
   return 2.0 * body_.shape().wire_radius / tool.jaw_length;
 }
 
-double NeedleScene::squeeze(const InstrumentParameters& tool, double command) const noexcept {
-  return std::clamp(tool.grip_stiffness * (stop_angle(tool) - command) / tool.jaw_length, 0.0, tool.max_grip_force);
+double NeedleScene::squeeze(const InstrumentParameters& tool, double stop, double command) noexcept {
+  return std::clamp(tool.grip_stiffness * (stop - command) / tool.jaw_length, 0.0, tool.max_grip_force);
 }
 
 void NeedleScene::limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept {
@@ -57,13 +57,14 @@ void NeedleScene::limit_jaws(const State& s, std::vector<InstrumentCommand>& com
     const InstrumentParameters& tool = model_.instruments[i];
     if (tool.kind == "scissors") continue;
     const double reach = std::max(2.0 * body_.shape().wire_radius, 0.5 * tool.jaw_length * s.instruments[i].angle);
-    if (s.needle.grips[i].held == 0 && !body_.between(static_cast<int>(i), reach, s.needle)) continue;
+    const bool wire = s.needle.grips[i].held != 0 || body_.between(static_cast<int>(i), reach, s.needle);
+    const double stop = wire ? stop_angle(tool) : tissue_ ? tissue_->stop_angle(s.tissue, tool, s.instruments[i]) : 0.0;
     InstrumentCommand& c = commands[i];
     const double command = c.follow ? c.grip_angle : s.instruments[i].grip_command;
-    if (command >= stop_angle(tool)) continue;
-    c.grip_force = !c.follow ? s.instruments[i].grip_force : c.has_grip_force ? c.grip_force : squeeze(tool, command);
+    if (command >= stop || stop == 0.0) continue;
+    c.grip_force = !c.follow ? s.instruments[i].grip_force : c.has_grip_force ? c.grip_force : squeeze(tool, stop, command);
     c.has_grip_force = true;
-    c.grip_angle = stop_angle(tool);
+    c.grip_angle = stop;
   }
 }
 
@@ -78,7 +79,9 @@ void NeedleScene::meet_tools(State& s, const std::vector<ObstacleBody>& from, Ob
     t.X_end = in.X_WT;
     t.grip_force = in.grip_force;
     t.bars = instrument_bars(p, in.angle, 2.0 * body_.shape().wire_radius);
-    const bool closed = in.angle < 1.15 * stop_angle(p) && in.grip_force > 0.0 && p.kind != "scissors";
+    const bool meet = in.angle < 1.15 * stop_angle(p) && p.kind != "scissors";
+    if (tissue_ && meet && grip.held == 0 && s.armed[i] != 0 && tissue_->open_clamp(s.tissue, tool, in.X_WT.p, o)) s.armed[i] = 0;
+    const bool closed = meet && in.grip_force > 0.0;
     if (grip.held != 0 && !closed) {
       say(o, "needle-released", tool, grip.arc / body_.shape().length(), "-");
       grip = {};
@@ -115,7 +118,7 @@ void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexc
   if (!summary.sound || summary.residual > kTroubleForce) say(o, "solver-trouble", -1, summary.residual, "N");
   s.needle.pull = body_.tethers.back().force;
   body_.tethers.pop_back();
-  if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments);
+  if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments, o);
   if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.thread, body_.tethers, rod.tethers.list, o);
   if (tissue_) tissue_->feel(s.force, s.torque);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {

@@ -26,7 +26,7 @@ class NeedleScene {
 
   /// Buttons of all tools together; the clamp of a vessel hears them.
   void handle_buttons(State& s, std::uint32_t buttons, Observation& o) const noexcept;
-  /// Jaws that close on the wire stop at it and squeeze it. Call before the instruments move.
+  /// Jaws that close on the wire, or on the vessel, stop at it and squeeze it. Call before the instruments move.
   void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
   /// After the instruments have moved from `from`: tells the needle where they are, takes it, lets it go.
   void meet_tools(State& s, const std::vector<ObstacleBody>& from, Observation& o) noexcept;
@@ -38,7 +38,7 @@ class NeedleScene {
 
  private:
   double stop_angle(const InstrumentParameters& tool) const noexcept;
-  double squeeze(const InstrumentParameters& tool, double command) const noexcept;
+  static double squeeze(const InstrumentParameters& tool, double stop, double command) noexcept;
 
   const Model& model_;
   NeedleBody body_;

@@ -19,7 +19,7 @@ WallLayer read_layer(const YamlNode& node) {
   return l;
 }
 
-/// Two flaps that face each other across a straight cut along x.
+/// Two flaps that face each other across a straight cut along x; uncut: one alone, about the centre, with a free border at the back.
 VesselMesh read_card(const YamlNode& node, double thickness) {
   CardShape shape;
   shape.thickness = thickness;
@@ -27,11 +27,16 @@ VesselMesh read_card(const YamlNode& node, double thickness) {
   shape.depth = node.quantity("depth", "mm", Range::positive());
   shape.across = node.integer("across", 2, 60);
   shape.deep = node.integer("deep", 2, 40);
-  const double gap = node.quantity("gap", "mm", Range::not_negative());
   const Vec3 at = node.vec3("centre", "mm");
   const VesselMesh flap = make_card(shape);
   VesselMesh mesh;
   Pose X;
+  if (node.flag_or("uncut", false)) {
+    X.p = at + 0.5 * shape.depth * Vec3::UnitY();
+    append(mesh, flap, X);
+    return mesh;
+  }
+  const double gap = node.quantity("gap", "mm", Range::not_negative());
   X.p = at - 0.5 * gap * Vec3::UnitY();
   append(mesh, flap, X);
   X.p = at + 0.5 * gap * Vec3::UnitY();

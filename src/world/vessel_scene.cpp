@@ -24,10 +24,26 @@ std::uint64_t hash_point(const WallPoint& p, std::uint64_t h) noexcept {
   return hash_bytes(row.data(), sizeof(row), h);
 }
 
+std::uint64_t hash_blood(const BloodState& b, std::uint64_t h) noexcept {
+  const Milking& m = b.milking;
+  const std::array<double, 15> row = {static_cast<double>(b.off[0]), static_cast<double>(b.off[1]), static_cast<double>(b.wrong_order), static_cast<double>(b.known),
+                                      static_cast<double>(b.next), b.lost, static_cast<double>(m.stage), static_cast<double>(m.up), static_cast<double>(m.down),
+                                      m.up_at, m.from, m.to, m.volume, m.missing, m.time};
+  h = hash_bytes(row.data(), sizeof(row), h);
+  for (int k = 0; k < b.known; ++k) {
+    const EdgeGap& g = b.gaps[static_cast<std::size_t>(k)];
+    const std::array<double, 6> gap = {g.gap, g.depth, g.length, g.place.x(), g.place.y(), g.place.z()};
+    h = hash_bytes(gap.data(), sizeof(gap), h);
+  }
+  return h;
+}
+
 }  // namespace
 
 VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity)
-    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity) {}
+    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity) {
+  if (model.lumen) blood_ = std::make_unique<BloodFlow>(model_);
+}
 
 VesselState VesselScene::start(const Vec3& point) {
   VesselState s;
@@ -49,6 +65,7 @@ void VesselScene::describe(TissueDescription& d) const {
   d.axis = model_.clamp.X_WB.q * Vec3::UnitZ();
   d.middle = model_.clamp.X_WB.p;
   d.radius = model_.radius;
+  d.clamp_reach = model_.lumen ? clamp_reach(model_) : 0.0;
   d.rest = model_.mesh.nodes;
   for (const Triangle& t : wall_.triangles()) d.triangles.push_back({t[0], t[1], t[2]});
 }
@@ -68,6 +85,8 @@ void VesselScene::hold(const VesselState& s, const Pose& X_WN, const RodState& t
 void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept {
   if (!model_.lumen) return;
   ClampState& c = s.clamp;
+  blood_->hear(s.blood, buttons, o);
+  if (s.blood.flowing()) return;
   const std::uint32_t pressed = buttons & ~c.down, let_go = c.down & ~buttons;
   const auto say = [&](const char* name, double value, const char* unit) {
     if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, -1, value, unit};
@@ -101,7 +120,8 @@ void VesselScene::move_clamp(const VesselState& s) noexcept {
   for (int part = 0; part < 2; ++part) wall_.place_clamp(part, motion[static_cast<std::size_t>(part)]);
 }
 
-void VesselScene::press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states) noexcept {
+void VesselScene::press(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, Observation& o) noexcept {
+  if (blood_) blood_->step(s, tools, states, o);
   contact_.press(wall_, s.wall, tools, states);
 }
 
@@ -129,6 +149,7 @@ void VesselScene::observe(const VesselState& s, const RodState& thread, Observat
   t.n_passes = s.tracks.n;
   t.point_force = s.tracks.point.force;
   t.soundness = *std::min_element(s.wall.soundness.begin(), s.wall.soundness.end());
+  if (blood_) blood_->observe(s, t.blood);
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   for (int k = 0; k < s.tracks.n; ++k) {
     const NeedleTrack& track = s.tracks.tracks[static_cast<std::size_t>(k)];
@@ -182,6 +203,7 @@ std::uint64_t hash_vessel(const VesselState& s) noexcept {
   const ClampState& c = s.clamp;
   const std::array<double, 5> clamp = {c.gap, c.turn, static_cast<double>(c.over), static_cast<double>(c.closing), static_cast<double>(c.down)};
   h = hash_bytes(clamp.data(), sizeof(clamp), h);
+  if (s.blood.flowing()) h = hash_blood(s.blood, h);  // else as it was before there was any
   const std::array<double, 9> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,
                                      t.point_before.x(), t.point_before.y(), t.point_before.z(), s.pressure[0], s.pressure[1]};
   return hash_point(t.point.at, hash_bytes(row.data(), sizeof(row), h));

@@ -1,9 +1,12 @@
 #pragma once
 // The tissue of a scene and the needle's and thread's ways through it: what it holds them by, what they do to it, its own step.
 
+#include <memory>
+
 #include "physics/implicit_rod.h"
 #include "physics/needle.h"
 #include "world/observation.h"
+#include "world/blood_flow.h"
 #include "world/vessel_contact.h"
 #include "world/vessel_model.h"
 
@@ -20,10 +23,16 @@ class VesselScene {
 
   void hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
   /// The clamp's buttons: `next` (4) turns it over and back, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
-  /// step then carries the stumps along.
+  /// step then carries the stumps along. 8 and 16 take the upstream and the downstream clamp off; then it moves no more.
   void handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept;
-  /// Jaws against the tissue. Before step().
-  void press(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states) noexcept;
+  /// The tips of this tool have just closed: true if they have opened a clamp.
+  bool open_clamp(VesselState& s, int tool, const Vec3& tip, Observation& o) const noexcept { return blood_ && blood_->open_with(s, tool, tip, o); }
+  /// [rad], at which jaws that have the vessel between them press it flat; 0 where they do not.
+  double stop_angle(const VesselState& s, const InstrumentParameters& tool, const InstrumentState& state) const noexcept {
+    return blood_ ? blood_->stop_angle(s.wall, tool, state) : 0.0;
+  }
+  /// Jaws against the tissue, and blood. Before step().
+  void press(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, Observation& o) noexcept;
   /// After step(): adds to the forces on the jaws.
   void feel(std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
   /// After needle and thread have moved: loads, punctures and tears, then the tissue's own step.
@@ -40,6 +49,7 @@ class VesselScene {
   VesselWall wall_;
   NeedleTracks tracks_;
   VesselContact contact_;
+  std::unique_ptr<BloodFlow> blood_;  // of two stumps in clamps
 };
 
 std::uint64_t hash_vessel(const VesselState& s) noexcept;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "physics/track_state.h"
+#include "physics/vessel_flow.h"
 
 namespace filum {
 
@@ -31,11 +32,25 @@ struct ClampState {
   std::uint32_t down = 0;      // buttons that are pressed
 };
 
+inline constexpr int kMostEdgeNodes = 64;
+
+/// Blood, from the moment on that the trainee takes a clamp off. Part of the state.
+struct BloodState {
+  std::array<std::int32_t, 2> off{};  // the upstream, the downstream clamp
+  std::int32_t wrong_order = 0;       // the downstream one came off first
+  std::int32_t known = 0, next = 0;   // nodes of the cut edge whose gap has been measured; which is next
+  std::array<EdgeGap, kMostEdgeNodes> gaps;
+  double lost = 0.0;                  // [m3]
+  Milking milking;
+  bool flowing() const noexcept { return off[0] != 0 || off[1] != 0; }
+};
+
 struct VesselState {
   WallState wall;
   TrackState tracks;
   TouchState touches;
   ClampState clamp;
+  BloodState blood;
   std::array<double, 2> pressure{};  // [Pa], transmural, of each stump
 };
 

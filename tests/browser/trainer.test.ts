@@ -81,6 +81,20 @@ describe.skipIf(!hasTrainer)("trainer", () => {
     expect(opened.trouble).toEqual([]);
   });
 
+  it("offers a demonstration only where there is one", async () => {
+    opened = await openPage(trainer.address);
+    const { page } = opened;
+    for (const [task, shown] of [["needle-course", false], ["knot-square", true]] as const) {
+      await page.click(`button[data-task=${task}]`);
+      await page.waitForSelector("dialog.start[open]");
+      expect(await page.isEnabled("input[value=demo]")).toBe(shown);
+      expect(await page.isChecked("input[value=pointer]")).toBe(true);
+      await page.keyboard.press("Escape");
+      await page.waitForSelector("dialog.start[open]", { state: "detached" });
+    }
+    expect(opened.trouble).toEqual([]);
+  });
+
   it("is used with the keyboard alone", async () => {
     opened = await openPage(trainer.address);
     const { page } = opened;

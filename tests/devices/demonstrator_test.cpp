@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "devices/sample_faults.h"
+
 namespace filum {
 namespace {
 
@@ -79,6 +81,115 @@ TEST(Demonstrator, FinishesAfterTheLastKeyAndHoldsIt) {
     if (s.tool == 0 && s.host_time_us > 1'000'000) {
       EXPECT_EQ(s.X_WD.p, Vec3(5e-3, 0, 0));
     }
+}
+
+const char* kLooking = R"(
+format: filum-demonstration/1
+title: A hand that looks
+tools:
+  - tool: 0
+    keys:
+      - { t: "0 s", p: ["9 mm", "0 mm", "0 mm"], handle: [0, 0, 1], opening: [1, 0, 0], grip: "0 deg" }
+      - { t: "100 ms", p: ["5 mm", "0 mm", "0 mm"] }
+      - { t: "200 ms", at: { thread: "1 mm", from: end }, p: ["0 mm", "0 mm", "2 mm"], handle: [0, 0, 1], opening: [1, 0, 0] }
+      - { t: "300 ms", arc: { centre: ["0 mm", "0 mm", "0 mm"], axis: [1, 0, 0], turns: 0.25 } }
+      - { t: "400 ms", at: { exit: 2, bring: "3 mm" }, p: ["0 mm", "0 mm", "1 mm"], handle: [0, 0, 1], opening: [0, 1, 0] }
+      - { t: "500 ms", at: {}, p: ["1 mm", "1 mm", "1 mm"], handle: [0, 0, 1], opening: [1, 0, 0] }
+  - tool: 1
+    keys:
+      - { t: "0 s", p: ["0 mm", "0 mm", "0 mm"], handle: [0, 0, 1], opening: [1, 0, 0], grip: "0 deg" }
+      - { t: "500 ms", p: ["0 mm", "5 mm", "0 mm"] }
+)";
+
+/// Sees a thread (from the start, or later), the exit of way 2, its own tool and the needle in it.
+struct MadeUpEyes final : Eyes {
+  Pose thread{Vec3(1e-3, 2e-3, 3e-3), Quat(Eigen::AngleAxisd(0.5, Vec3::UnitZ()))};
+  Pose tool{Vec3(0, 0, 7e-3), Quat(Eigen::AngleAxisd(0.3, Vec3::UnitX()))}, needle{Vec3(1e-3, 0, 7e-3), Quat(Eigen::AngleAxisd(-0.4, Vec3::UnitY()))};
+  bool thread_there = true;
+  mutable std::vector<Look> asked;
+  bool find(const Look& look, Pose& X_WF) const noexcept override {
+    asked.push_back(look);
+    if (look.kind == Look::Kind::thread) X_WF = thread;
+    if (look.kind == Look::Kind::exit) X_WF = {Vec3(0, 4e-3, 0), Quat::Identity()};
+    if (look.kind == Look::Kind::tool) X_WF = tool;
+    if (look.kind == Look::Kind::needle) X_WF = needle;
+    return look.kind != Look::Kind::thread || thread_there;
+  }
+};
+
+/// The newest pose of tool 0 when scene time `t_us` is reached.
+Pose pose_at(const std::vector<DeviceSample>& samples, std::int64_t t_us) {
+  for (const DeviceSample& s : samples)
+    if (s.tool == 0 && s.host_time_us == t_us) return s.X_WD;
+  ADD_FAILURE() << "no sample at " << t_us;
+  return {};
+}
+
+TEST(Demonstrator, GoesWhereItSeesThingsWhenItSetsOut) {
+  Demonstrator device(PoseScript::parse(kLooking, "looking.yaml"));
+  MadeUpEyes eyes;
+  device.look_through(&eyes);
+  const auto samples = play(device, 1000, 500'000);
+  ASSERT_EQ(eyes.asked.size(), 4u) << "once for the thread; for the exit, the needle and the tool that holds it";
+  EXPECT_DOUBLE_EQ(eyes.asked[0].length, 1e-3);
+  EXPECT_TRUE(eyes.asked[0].from_end);
+  EXPECT_EQ(eyes.asked[1].index, 1);
+  EXPECT_EQ(eyes.asked[2].holder, 0);
+  EXPECT_NEAR((pose_at(samples, 100'000).p - Vec3(5e-3, 0, 0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((pose_at(samples, 200'000).p - eyes.thread * Vec3(0, 0, 2e-3)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR(pose_at(samples, 200'000).q.angularDistance(eyes.thread.q), 0.0, 1e-7);
+  // A quarter of a turn about the thread's own direction, right-handed: from z to -y.
+  EXPECT_NEAR((pose_at(samples, 300'000).p - eyes.thread * Vec3(0, -2e-3, 0)).norm(), 0.0, 1e-15);
+  // The needle, held by the tool as seen, is at the exit with its normal up and its outward direction along y.
+  const Pose X_WA = pose_at(samples, 400'000) * eyes.tool.inverse() * eyes.needle;
+  EXPECT_NEAR((X_WA.p - Vec3(0, 4e-3, 1e-3)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((X_WA.q * Vec3::UnitX() - Vec3::UnitY()).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((X_WA.q * Vec3::UnitZ() - Vec3::UnitZ()).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((pose_at(samples, 500'000).p - Vec3(1e-3, 1e-3, 1e-3)).norm(), 0.0, 1e-15);
+}
+
+TEST(Demonstrator, MovesWithoutAJumpWhereItLooks) {
+  Demonstrator device(PoseScript::parse(kLooking, "looking.yaml"));
+  MadeUpEyes eyes;
+  device.look_through(&eyes);
+  Pose before = device.script().at(0, 0.0).X_WD;
+  for (const DeviceSample& s : play(device, 1000, 600'000)) {
+    if (s.tool != 0) continue;
+    EXPECT_LT((s.X_WD.p - before.p).norm(), 0.3e-3) << s.host_time_us;
+    EXPECT_LT(s.X_WD.q.angularDistance(before.q), 0.05) << s.host_time_us;
+    before = s.X_WD;
+  }
+}
+
+TEST(Demonstrator, WaitsWithAllHandsForWhatIsNotThereAndSaysSo) {
+  Demonstrator device(PoseScript::parse(kLooking, "looking.yaml"));
+  MadeUpEyes eyes;
+  eyes.thread_there = false;
+  device.look_through(&eyes);
+  std::vector<DeviceSample> out;
+  for (std::int64_t now = 0; now <= 300'000; now += 1000) device.poll(now, out);
+  for (const DeviceSample& s : out) {
+    EXPECT_EQ((s.buttons & kNotSeen) != 0, s.tool == 0 && s.host_time_us >= 100'000) << s.tool << " at " << s.host_time_us;
+    if (s.host_time_us >= 100'000) {
+      EXPECT_NEAR((s.X_WD.p - (s.tool == 0 ? Vec3(5e-3, 0, 0) : device.script().at(1, 0.1).X_WD.p)).norm(), 0.0, 1e-15);
+    }
+  }
+  eyes.thread_there = true;
+  out.clear();
+  for (std::int64_t now = 301'000; now <= 401'000; now += 1000) device.poll(now, out);
+  EXPECT_EQ(out.front().buttons & kNotSeen, 0u);
+  EXPECT_NEAR((pose_at(out, 401'000).p - eyes.thread * Vec3(0, 0, 2e-3)).norm(), 0.0, 1e-15);
+}
+
+TEST(Demonstrator, IsOverAfterTenSecondsInVain) {
+  Demonstrator device(PoseScript::parse(kLooking, "looking.yaml"));  // has no eyes
+  std::vector<DeviceSample> out;
+  device.poll(10'000'000, out);
+  for (std::int64_t now = 0; now <= 20'000'000 && device.health().state != DeviceState::finished; now += 10'000) {
+    out.clear();
+    device.poll(now, out);
+  }
+  EXPECT_EQ(device.health().state, DeviceState::finished);
 }
 
 }  // namespace

@@ -102,6 +102,15 @@ TEST(PoseScript, RefusesBadFilesByName) {
       {"tool index", "tool", "tool: 2", "tool: 3"},
       {"tool twice", "tool", "tool: 2", "tool: 0"},
       {"grip", "grip", "\"12 deg\"", "\"120 deg\""},
+      {"unknown object", "at.cup", "grip: \"0 deg\"", "at: { cup: 1 }"},
+      {"two objects", "at.exit", "grip: \"0 deg\"", "at: { entry: 1, exit: 1 }"},
+      {"thread from nowhere", "at.from", "grip: \"0 deg\"", "at: { thread: \"1 mm\" }"},
+      {"way number", "at.exit", "grip: \"0 deg\"", "at: { exit: 0 }"},
+      {"axes", "at.axes", "grip: \"0 deg\"", "at: { exit: 1, axes: needle }"},
+      {"at without p", "p", "grip: \"0 deg\"", "at: { exit: 1 }, handle: [0, 0, 1], opening: [1, 0, 0]"},
+      {"at without handle", "handle", "grip: \"0 deg\"", "at: { exit: 1 }, p: [\"0 mm\", \"0 mm\", \"0 mm\"], opening: [1, 0, 0]"},
+      {"at on the first key", "at", "grip: \"0.1 rad\"", "grip: \"0.1 rad\", at: { exit: 1 }"},
+      {"needle brought to its own tool", "at.tool", "grip: \"0 deg\"", "at: { tool: 0, bring: \"1 mm\" }"},
       {"no keys", "keys", "tool: 2\n    keys:", "tool: 2\n    keys: []\n    x:"},
   };
   for (const Bad& bad : cases) {

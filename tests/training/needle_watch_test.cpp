@@ -84,6 +84,81 @@ TEST(NeedleWatch, WrongPlaceOrAngleIsNotLoaded) {
   }
 }
 
+TEST(NeedleWatch, EyesAreTakenInTurnAtTheirMarks) {
+  NeedleTask task;
+  for (const double x : {0.0, 1e-3}) {
+    NeedleGoal eye;
+    eye.kind = NeedleGoal::Kind::eye;
+    eye.at = Vec3(x, 0, 0);
+    eye.out = Vec3(x, 2e-3, 0);
+    eye.within = 0.3e-3;
+    task.goals.push_back(eye);
+  }
+  NeedleWatch w(task, {});
+  std::vector<TaskEvent> events;
+  Observation o = field();
+  const auto pass = [&](int k, Vec3 in, Vec3 out, bool is_out) {
+    PassObservation& p = o.tissue.passes[static_cast<std::size_t>(k)];
+    p.entry_rest = in;
+    p.exit_rest = out;
+    p.out = is_out;
+    o.tissue.n_passes = k + 1;
+    w.observe(o, kDt, true, events);
+  };
+  pass(0, Vec3(1e-3, 0, 0), Vec3(1e-3, 2e-3, 0), true);
+  EXPECT_EQ(w.step(), 0) << "the second eye is not the first's turn";
+  pass(1, Vec3(0.1e-3, 0, 0.1e-3), Vec3(0, 0.3e-3, 0), true);  // down through the card
+  pass(2, Vec3(0, 1.8e-3, 0), Vec3(0, 2.2e-3, 0), false);
+  EXPECT_EQ(w.step(), 0) << "not out yet";
+  pass(2, Vec3(0, 1.8e-3, 0), Vec3(0, 2.2e-3, 0), true);
+  EXPECT_EQ(w.step(), 1);
+  pass(3, Vec3(1e-3, 0, 0), Vec3(1.4e-3, 2e-3, 0), true);
+  EXPECT_EQ(w.step(), 1) << "0.4 mm beside the mark";
+  pass(4, Vec3(1e-3, 0, 0), Vec3(1e-3, 2e-3, 0), true);
+  EXPECT_TRUE(w.done());
+  EXPECT_NEAR(w.report().present_error, std::sqrt((0.01 + 0.04) / 4.0) * 1e-3, 1e-12) << "0.1 and 0.2 mm off, then none";
+}
+
+TEST(NeedleWatch, FollowsClampsAndMilking) {
+  NeedleTask task;
+  task.has_tissue = true;
+  NeedleWatch w(task, {});
+  std::vector<TaskEvent> events;
+  Observation o = field();
+  BloodObservation& b = o.tissue.blood;
+  b.present = true;
+  b.least_area = 0.3e-6;
+  const auto see = [&](double time, const char* name, double value) {
+    o.time = time;
+    o.n_events = name == nullptr ? 0 : 1;
+    if (name != nullptr) o.events[0] = {name, -1, value, "-"};
+    w.observe(o, kDt, true, events);
+  };
+  see(1.0, nullptr, 0.0);
+  EXPECT_FALSE(w.report().clamps.has_value());
+  b.wrong_order = true;
+  b.least_area = 0.5e-6;
+  b.leaks = 2e-7;
+  see(2.0, "clamp-off", 1.0);
+  b.leaks = 1e-7;
+  b.pressure = {13000.0, 12900.0};
+  see(3.0, "clamp-off", 0.0);
+  see(4.0, "milking-let-go", 0.4);
+  see(4.1, "milking-refilled", 0.02);
+  const NeedleReport r = w.report();
+  ASSERT_TRUE(r.clamps.has_value() && r.milking.has_value());
+  EXPECT_EQ(r.clamps->downstream, 2.0);
+  EXPECT_EQ(r.clamps->upstream, 3.0);
+  EXPECT_TRUE(r.clamps->wrong_order);
+  EXPECT_EQ(r.clamps->area_before, 0.3e-6);
+  EXPECT_EQ(r.clamps->area, 0.5e-6);
+  EXPECT_EQ(r.clamps->most_leak, 2e-7);
+  EXPECT_EQ(r.clamps->leak, 1e-7);
+  EXPECT_EQ(r.milking->tests(), 1);
+  EXPECT_EQ(r.milking->seconds, 0.02);
+  EXPECT_NEAR(r.milking->volume, 4e-10, 1e-20);
+}
+
 TEST(NeedleWatch, CountsTakesDropsAndWholeStitches) {
   NeedleTask task;
   NeedleGoal pass, draw;

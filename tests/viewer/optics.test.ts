@@ -1,4 +1,4 @@
-import { blurDiameter, eyeAt, fieldDiameter, kWorkingDistance, openingAngle, scaleBar, zoomed, type OpticsState } from "@viewer/scene/optics";
+import { blurDiameter, eyeAt, fieldDiameter, magnificationFor, kWorkingDistance, openingAngle, scaleBar, zoomed, type OpticsState } from "@viewer/scene/optics";
 
 const optics = (change: Partial<OpticsState> = {}): OpticsState => ({ magnification: 10, focus: 3, centre: [1, 2], tilt: 0.2, eyeDistance: 22, ...change });
 
@@ -46,5 +46,12 @@ describe("optics", () => {
       expect(share).toBeLessThanOrEqual(0.2 + 1e-9);
       expect([1, 2, 5]).toContain(Math.round(bar / Math.pow(10, Math.floor(Math.log10(bar) + 1e-9))));
     }
+  });
+});
+
+describe("the start", () => {
+  it("shows what is stitched at a third of the field", () => {
+    expect(3 * Math.sqrt(5.4 * 1)).toBeCloseTo(fieldDiameter(magnificationFor(5.4, 1)), 9);
+    expect(magnificationFor(0.5, 0.5)).toBe(40);
   });
 });

@@ -1,5 +1,5 @@
 import { RatePage } from "@viewer/ui/rate_page";
-import { both, joinSection, replayAt, StitchList, stitchSection } from "@viewer/ui/stitch_panel";
+import { both, clampSection, joinSection, replayAt, StitchList, stitchSection, tails } from "@viewer/ui/stitch_panel";
 import { cividis } from "@viewer/scene/palette";
 import type { App } from "@viewer/app";
 import type { Leak, Result, Stitch } from "@viewer/messages";
@@ -21,6 +21,17 @@ describe("stitches of a result", () => {
     const links = [...stitchSection(result, "s 1")!.querySelectorAll(".lapses a")].map((link) => link.getAttribute("href"));
     expect(links).toEqual(["#/replay/s%201/20.00/stitch-2", "#/replay/s%201/11.25/stitch-1"]);
     expect(stitchSection(result, "s 1")!.querySelectorAll(".critical").length).toBe(1);
+  });
+  it("show the knot of each where it was recognised", () => {
+    const tied = { ...result, stitches: [{ ...result.stitches![0], throws: 3, knot: "square", tail_mm: [1.25, 0.8] }] };
+    const cells = [...stitchSection(tied, null)!.querySelectorAll("tbody td")].map((one) => one.textContent);
+    expect(cells.slice(-4, -1)).toEqual(["3", "Square", "1.3 / 0.8"]);
+    expect(tails(undefined)).toBe("–");
+    const section = clampSection({ upstream_s: 12, downstream_s: null, order_right: true, note: "as asked", pressure_mmhg: [99, 98], leak_ml_per_min: 1, most_leak_ml_per_min: 2, through_ml_per_min: 4.9, lost_ml: 0.1, least_lumen_before_mm2: 0.2, least_lumen_mm2: 0.3 },
+      { tests: 1, refilled: 1, stayed_empty: 0, spoiled: 0, refill_s: 0.012, emptied_ml: 3e-4, note: "no proof" })!;
+    expect(section.textContent).toContain("left on");
+    expect(section.textContent).toContain("12 ms");
+    expect(section.textContent).toContain("0.30 µl");
   });
   it("are not made up where a task has none", () => {
     expect(stitchSection({ ...result, stitches: undefined }, "s")).toBeNull();

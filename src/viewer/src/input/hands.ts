@@ -10,11 +10,13 @@ export interface Hand {
   grip: number; // 0 open ... 1 closed tight
   closing: boolean; // a key or button holds the grip closing
   latched: boolean; // the grip stays when nothing holds it
-  buttons: number; // 1 clutch, 2 cut, 4 next
-  tapped: number; // those pressed since the last message: a tap between two messages counts
+  buttons: number; // 1 clutch, 2 cut, 4 next, 8 and 16 clamps off
+  tapped: number; // those pressed a moment ago: a tap between two messages counts, also with a trainer that is late
+  since: number; // [s], when a message first told of them
 }
 
-export const kClutch = 1, kCut = 2, kNext = 4;
+export const kClutch = 1, kCut = 2, kNext = 4, kUpstreamOff = 8, kDownstreamOff = 16;
+const kTap = 0.06; // [s], for which a tap is told
 const kCloseRate = 2.2, kOpenRate = 4.5; // [1/s]
 const kReach = 0.06; // [m], hands stay within this distance of the middle of the scene
 const kLowest = 0.17; // smallest upward part of the tool axis: the handle stays above the tip
@@ -60,7 +62,7 @@ export class Hands {
       const grip = Math.max(0, 1 - open);
       this.hands.push({
         position: [...tool.device_pose.position], quaternion: [...tool.device_pose.quaternion], grip,
-        closing: false, latched: grip > 0.5, buttons: 0, tapped: 0,
+        closing: false, latched: grip > 0.5, buttons: 0, tapped: 0, since: -1,
       });
     });
     this.centre = [0, 1, 2].map((k) => this.hands.reduce((sum, hand) => sum + hand.position[k], 0) / Math.max(1, this.hands.length)) as Vec3;
@@ -151,7 +153,7 @@ export class Hands {
   }
 
   releaseAll(): void {
-    for (const hand of this.hands) { hand.closing = false; hand.buttons = hand.tapped = 0; }
+    for (const hand of this.hands) { hand.closing = false; hand.buttons = hand.tapped = 0; hand.since = -1; }
   }
 
   /// Lets time pass for the grips [s].
@@ -164,7 +166,8 @@ export class Hands {
 
   message(index: number, time: number): Pointer {
     const hand = this.hands[index], buttons = hand.buttons | hand.tapped;
-    hand.tapped = 0;
+    if (hand.tapped !== 0 && hand.since < 0) hand.since = time;
+    if (hand.tapped !== 0 && time - hand.since >= kTap) { hand.tapped = 0; hand.since = -1; }
     return {
       type: "pointer", tool: index, time, position: [...hand.position], quaternion: [...hand.quaternion], grip: hand.grip,
       buttons,

@@ -43,6 +43,7 @@ export const kShortcuts: ShortcutGroup[] = [
       { keys: "P", does: "catch the mouse in the field (Esc lets go)" },
       { keys: "C", does: "cut; a spatula, in the hand and off the tissue: its next bend or width; a vessel's clamp: slides while held" },
       { keys: "N", does: "next; a spatula: lock or free its arm; a vessel's clamp: turn it over" },
+      { keys: "U  Z", does: "take the upstream, the downstream clamp off a vessel (or close an instrument on the clamp's arm)" },
       { keys: "Gamepad", does: "sticks: hands; triggers: grips; bumpers: depth; X: cut; A: next" },
     ],
   },

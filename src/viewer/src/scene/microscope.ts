@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import type { Frame, Scene } from "../messages";
 import { FinishPass } from "./finish_pass";
-import { blurDiameter, eyeAt, fieldDiameter, kMagnificationBrain, kMagnificationStart, kTilt, kTiltBrain, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
+import { blurDiameter, eyeAt, fieldDiameter, magnificationFor, kMagnificationBrain, kMagnificationStart, kTilt, kTiltBrain, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
 import { isSoftwareRenderer, QualityChooser } from "./quality";
 import { Stage } from "./stage";
 
@@ -46,7 +46,7 @@ export class Microscope {
     this.optics.focus = this.stage.focusHeight;
     this.optics.centre = [...this.stage.centre];
     this.optics.tilt = scene.brain && scene.brain.bone === null ? kTiltBrain : kTilt; // below a lobe one looks along the bone
-    const start = scene.brain ? kMagnificationBrain : kMagnificationStart;
+    const start = scene.brain ? kMagnificationBrain : scene.tissue ? magnificationFor(...extent(scene.tissue.rest)) : kMagnificationStart;
     if (start !== this.start) this.optics.magnification = this.start = start;
   }
 
@@ -171,6 +171,17 @@ export class Microscope {
     }
     this.finish.setSamples(level.blurSamples);
   }
+}
+
+/// Length and width [mm] of places [m] seen from above.
+function extent(places: readonly number[]): [number, number] {
+  const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+  places.forEach((value, k) => {
+    if (k % 3 === 2) return;
+    low[k % 3] = Math.min(low[k % 3], value);
+    high[k % 3] = Math.max(high[k % 3], value);
+  });
+  return [1000 * (high[0] - low[0]), 1000 * (high[1] - low[1])];
 }
 
 /// What draws for this browser; asked of a small context of its own, because the choice of the real one depends on it.

@@ -3,6 +3,7 @@ import * as THREE from "three";
 import type { Guide, NeedleShape, NeedleState, Overlay, TissueShape, TissueState } from "../messages";
 import type { Materials } from "./materials";
 import { cividis } from "./palette";
+import { fullness, isLiving, sharesAlong, Vessel } from "./vessel";
 
 const kMm = 1000;
 const kAlong = 64, kRound = 12; // rings along the wire, corners of a ring
@@ -60,19 +61,29 @@ export class Tissue {
   private readonly bridge = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0xffe27a, depthTest: false, transparent: true }));
   private places: THREE.Vector3[][] = []; // of each way through the tissue
   private marked: number[] = [];
+  private readonly vessel: Vessel | null;
+  private readonly own: THREE.Color;
+  private shares: Float32Array | null = null; // along the lumen, of each vertex
+  private coloured = false; // by a scale
 
-  constructor(shape: TissueShape, painted: boolean) {
+  constructor(private readonly shape: TissueShape, painted: boolean, materials: Materials, floor: number) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(shape.rest.map((v) => v * kMm)), 3));
     geometry.setIndex(shape.triangles);
     geometry.computeVertexNormals();
-    const look = { color: shape.kind === "card" ? 0xe6d3ae : 0xd98f86, side: THREE.DoubleSide, transparent: true, opacity: 0.9 };
+    const colour = shape.kind === "card" ? 0xe6d3ae : isLiving(shape.name) ? 0xd98f86 : 0xdcc9c0, wet = shape.kind !== "card";
+    this.own = new THREE.Color(colour);
+    geometry.setAttribute("color", new THREE.BufferAttribute(new Float32Array(shape.rest.length), 3));
+    const look = { vertexColors: true, side: THREE.DoubleSide, transparent: true, opacity: wet ? 0.82 : 0.9 };
     const material = painted
-      ? new THREE.MeshLambertMaterial(look)
+      ? wet ? new THREE.MeshPhongMaterial({ ...look, shininess: 70, specular: 0x776a66 }) : new THREE.MeshLambertMaterial(look)
       : new THREE.MeshPhysicalMaterial({ ...look, roughness: 0.45, clearcoat: shape.kind === "card" ? 0.1 : 0.8, clearcoatRoughness: 0.25 });
     this.wet = material;
     this.surface = new THREE.Mesh(geometry, material);
     this.surface.receiveShadow = this.surface.castShadow = true;
+    this.vessel = shape.clamp_reach > 0 ? new Vessel(shape, materials, colour, painted, floor) : null;
+    if (this.vessel) this.group.add(this.vessel.group);
+    this.paint(null);
     this.group.add(this.surface, this.bridge);
     this.bridge.visible = false;
     this.bridge.renderOrder = 3;
@@ -104,9 +115,10 @@ export class Tissue {
   colour(overlay: Overlay | null): void {
     const { geometry } = this.surface;
     this.surface.material = overlay ? this.plain : this.wet; // unlit: the colours are those of the scale
+    if (!overlay && this.coloured) this.paint(null);
+    this.coloured = overlay !== null;
     if (!overlay) return;
-    let colours = geometry.getAttribute("color") as THREE.BufferAttribute | undefined;
-    if (!colours) geometry.setAttribute("color", (colours = new THREE.BufferAttribute(new Float32Array(3 * geometry.getAttribute("position").count), 3)));
+    const colours = geometry.getAttribute("color") as THREE.BufferAttribute;
     const shade = new THREE.Color();
     for (let i = 0; i < Math.min(colours.count, overlay.values.length); ++i) {
       shade.setRGB(...cividis(overlay.values[i] / overlay.full), THREE.SRGBColorSpace);
@@ -115,7 +127,23 @@ export class Tissue {
     colours.needsUpdate = true;
   }
 
-  update(state: TissueState): void {
+  /// The tissue's own colour, and that of the blood behind it.
+  private paint(blood: TissueState["blood"]): void {
+    const colours = this.surface.geometry.getAttribute("color") as THREE.BufferAttribute, shade = new THREE.Color();
+    if (blood && !this.shares) this.shares = sharesAlong(this.shape.rest, blood);
+    for (let k = 0; k < colours.count; ++k) {
+      shade.copy(this.own);
+      if (blood && this.shares) shade.lerp(kInside, 0.7 * fullness(blood, this.shares[k]));
+      colours.setXYZ(k, shade.r, shade.g, shade.b);
+    }
+    colours.needsUpdate = true;
+  }
+
+  update(state: TissueState, time: number): void {
+    if (state.blood) {
+      this.vessel?.update(state, state.blood, time);
+      if (!this.coloured) this.paint(state.blood);
+    }
     const position = this.surface.geometry.getAttribute("position") as THREE.BufferAttribute;
     const array = position.array as Float32Array, count = Math.min(array.length, state.positions.length);
     for (let i = 0; i < count; ++i) array[i] = state.positions[i] * kMm;
@@ -136,17 +164,20 @@ export class Tissue {
   }
 }
 
+const kInside = new THREE.Color(0x9a1c1f);
 const kGuide = 0x0a3d91, kLift = 0.05; // colour; [mm]
 
 /// Bites and the needle's way for beginners: a ring where it goes in, a square where it comes out, a dotted line for its point.
 export class Guides {
   readonly group = new THREE.Group();
+  readonly printed: boolean; // marks of the card itself, which are always seen
   private readonly ink = new THREE.LineBasicMaterial({ color: kGuide });
   private readonly way = new THREE.LineDashedMaterial({ color: kGuide, dashSize: 0.08, gapSize: 0.05 });
   private readonly parts: { vertex: number; group: THREE.Group }[] = [];
 
   constructor(guides: readonly Guide[], private readonly rest: readonly number[]) {
     const { ink, way } = this;
+    this.printed = guides.every((guide) => guide.in.path.length === 0);
     const ring = outline(24, 0.1), square = outline(4, 0.12);
     for (const guide of guides) {
       for (const [place, shape] of [[guide.in, ring], [guide.out, square]] as const) {
@@ -159,6 +190,7 @@ export class Guides {
           mark.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), outward);
           mark.position.addScaledVector(outward, kLift);
         }
+        else mark.position.z += kLift;
         const line = new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), way);
         line.computeLineDistances();
         mark.renderOrder = line.renderOrder = 2;

@@ -13,6 +13,11 @@ export const kMagnificationMin = 5;
 export const kMagnificationMax = 40;
 export const kMagnificationStart = 8; // both hands at rest are in the field
 export const kMagnificationBrain = 5; // blades, lips and the way between them
+
+/// What is stitched fills a third of the picture at the start, taken as the root of its length times its width [mm].
+export function magnificationFor(length: number, width: number): number {
+  return clampMagnification(kFieldNumber / (3 * Math.sqrt(Math.max(1e-6, length * width))));
+}
 export const kTilt = 0.21; // [rad], at which instruments are seen from the operator's side
 export const kTiltBrain = 0.1; // [rad], into a fissure: nearly from above, as its target is measured, but no blade quite on edge
 export const kWorkingDistance = 200; // [mm], objective to focal plane

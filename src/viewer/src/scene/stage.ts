@@ -108,7 +108,7 @@ export class Stage {
     this.content.add(this.laboratory.group);
     this.needle = message.needle ? new Needle(message.needle, this.materials) : null;
     if (this.needle) this.content.add(this.needle.mesh);
-    this.tissue = message.tissue ? new Tissue(message.tissue, this.painted) : null;
+    this.tissue = message.tissue ? new Tissue(message.tissue, this.painted, this.materials, this.floorHeight) : null;
     if (this.tissue) this.content.add(this.tissue.group);
     this.tissue?.mark(this.marked);
     this.guides = message.guides?.length && message.tissue ? new Guides(message.guides, message.tissue.rest) : null;
@@ -130,7 +130,7 @@ export class Stage {
     for (let i = 0; i < this.instruments.length && i < frame.tools.length; ++i) this.instruments[i].update(frame.tools[i]);
     this.laboratory?.update(frame);
     if (frame.needle) this.needle?.update(frame.needle);
-    if (frame.tissue) this.tissue?.update(frame.tissue);
+    if (frame.tissue) this.tissue?.update(frame.tissue, frame.time);
     this.tissue?.colour(frame.overlay ?? null);
     if (frame.tissue) this.guides?.update(frame.tissue, frame.overlay != null);
   }
@@ -143,7 +143,7 @@ export class Stage {
 
   showGuides(on: boolean): void {
     this.guidesShown = on;
-    if (this.guides) this.guides.group.visible = on;
+    if (this.guides) this.guides.group.visible = on || this.guides.printed;
   }
 
   /// Places in the field where each way through the tissue begins and ends [mm].

@@ -1,5 +1,5 @@
 // What was found of stitches, lapses and the join: a table for the result, a list of buttons beside the field of a replay.
-import type { Lapse, Leak, PatencyFactor, Result, Stitch } from "../messages";
+import type { Clamps, Lapse, Leak, MilkingTest, PatencyFactor, Result, Stitch } from "../messages";
 import { h } from "./dom";
 import { quantity, words } from "./format";
 import { icon } from "./pictures";
@@ -14,6 +14,12 @@ export function both(values: readonly (number | null)[], digits: number): string
 
 function cell(value: number | null | undefined, factor: number, digits: number): string {
   return value === null || value === undefined ? "–" : (factor * value).toFixed(digits);
+}
+
+/// "1.2 / 0.9": the cut ends of a knot; a dash where there is none.
+export function tails(value: Stitch["tail_mm"]): string {
+  if (value === null || value === undefined) return "–";
+  return both(Array.isArray(value) ? value : [value], 1);
 }
 
 export function lapseValue(lapse: Lapse): string {
@@ -34,13 +40,14 @@ export function replayAt(id: string, time: number | null, stitch = -1): string {
 }
 
 const kColumns: [string, string][] = [["Stitch", ""], ["Bite", "both sides, wall thicknesses"], ["Entry", "°, of the needle to the surface"], ["Exit", "°, of the needle to the surface"], ["Oblique", "° to the axis"],
-  ["Depth", "% of the wall"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Lapses", ""]];
+  ["Depth", "% of the wall"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Throws", "of the knot"], ["Knot", ""], ["Tail", "mm, cut ends"], ["Lapses", ""]];
 
 function row(stitch: Stitch, k: number, next: number | undefined, lapses: Lapse[], id: string | null): HTMLElement {
   const name = `Stitch ${k + 1}`;
   const found = lapses.length > 0 ? [icon.warn(), " ", lapses.map((one) => words(one.name)).join(", ")] : ["none"];
   const numbers = [both(stitch.bite_thicknesses, 1), cell(stitch.entry_angle_deg, 1, 0), cell(stitch.exit_angle_deg, 1, 0), cell(stitch.obliquity_deg, 1, 0), cell(stitch.depth_share, 100, 0),
-    cell(next, 1000, 2), cell(stitch.tension_n, 1000, 1), cell(stitch.peak_force_n, 1000, 1), cell(stitch.torn_m, 1e6, 0)];
+    cell(next, 1000, 2), cell(stitch.tension_n, 1000, 1), cell(stitch.peak_force_n, 1000, 1), cell(stitch.torn_m, 1e6, 0),
+    cell(stitch.throws, 1, 0), stitch.knot ? words(stitch.knot) : "–", tails(stitch.tail_mm)];
   return h("tr", { "data-stitch": k }, h("th", { scope: "row" }, id ? h("a", { href: replayAt(id, stitch.time, k), title: "Show this stitch in the replay" }, name) : name),
     ...numbers.map((text) => h("td", { class: "number" }, text)), h("td", { class: lapses.length > 0 ? "alarm" : "quiet" }, ...found));
 }
@@ -85,6 +92,22 @@ export function joinSection(leak: Leak | undefined): HTMLElement | null {
     h("h3", {}, "Leak round the cut"), h("ul", { class: "sectors" }, ...bars), leak.solver_sound ? null : h("p", { class: "alarm" }, "The wall solver had trouble: take these numbers with care."));
 }
 
+/// Clamps as they were taken off, and the milking test: what flowed, and what a refill does not show.
+export function clampSection(clamps: Clamps | undefined, milking: MilkingTest | undefined): HTMLElement | null {
+  if (!clamps && !milking) return null;
+  const list = (facts: [string, string][]) => h("dl", { class: "facts" }, ...facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+  const when = (time: number | null) => (time === null ? "left on" : `off at ${time.toFixed(1)} s`);
+  return h("section", { class: "panel clamppanel", "aria-labelledby": "clamps-title" }, h("h2", { id: "clamps-title" }, "Clamps taken off by hand"),
+    clamps ? list([["Upstream", when(clamps.upstream_s)], ["Downstream", when(clamps.downstream_s)], ["Pressure in the stumps", `${both(clamps.pressure_mmhg, 0)} mmHg`],
+      ["Leak at the end, most", `${cell(clamps.leak_ml_per_min, 1, 1)}, ${cell(clamps.most_leak_ml_per_min, 1, 1)} ml/min`], ["Flow on through the vessel (below zero: back from collaterals)", `${cell(clamps.through_ml_per_min, 1, 2)} ml/min`],
+      ["Blood lost", `${cell(clamps.lost_ml, 1, 2)} ml`], ["Narrowest lumen before, at the end", `${cell(clamps.least_lumen_before_mm2, 1, 3)}, ${cell(clamps.least_lumen_mm2, 1, 3)} mm²`]]) : null,
+    clamps ? h("p", { class: clamps.order_right ? "quiet" : "alarm" }, clamps.order_right ? icon.pass() : icon.warn(), ` ${clamps.note}`) : null,
+    milking ? h("h3", {}, "Milking test") : null,
+    milking ? list([["Refilled", `${milking.refilled} of ${milking.tests}`], ["Time of the last refill", milking.refill_s === null ? "–" : `${cell(milking.refill_s, 1000, 0)} ms`],
+      ["Emptied", milking.emptied_ml === null ? "–" : `${cell(milking.emptied_ml, 1000, 2)} µl`], ["Spoiled (the further forceps let go)", `${milking.spoiled}`]]) : null,
+    milking ? h("p", { class: "quiet" }, milking.note) : null);
+}
+
 /// What raises the risk of a thrombus: factors with their source, no sum and no diagnosis.
 export function factorSection(factors: readonly PatencyFactor[] | undefined): HTMLElement | null {
   if (!factors || factors.length === 0) return null;
@@ -121,7 +144,8 @@ export class StitchList {
     this.facts.replaceChildren();
     if (one) {
       const facts: [string, string][] = [["Bites", `${both(one.bite_thicknesses, 1)} wall thicknesses`], ["Entry, exit", `${cell(one.entry_angle_deg, 1, 0)}°, ${cell(one.exit_angle_deg, 1, 0)}°`],
-        ["Oblique", `${cell(one.obliquity_deg, 1, 0)}°`], ["Depth", `${cell(one.depth_share, 100, 0)} % of the wall`], ["Tension left", `${cell(one.tension_n, 1000, 1)} mN`], ["Torn", `${cell(one.torn_m, 1e6, 0)} µm`]];
+        ["Oblique", `${cell(one.obliquity_deg, 1, 0)}°`], ["Depth", `${cell(one.depth_share, 100, 0)} % of the wall`], ["Tension left", `${cell(one.tension_n, 1000, 1)} mN`], ["Torn", `${cell(one.torn_m, 1e6, 0)} µm`],
+        ["Knot", one.knot ? `${words(one.knot)}, ${cell(one.throws, 1, 0)} throws, tails ${tails(one.tail_mm)} mm` : "–"]];
       const lapses = ofStitch(this.result.lapses, this.chosen);
       this.facts.append(h("h3", {}, `Stitch ${stitch + 1}`), h("dl", { class: "facts" }, ...facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])),
         ...lapses.map((lapse) => h("p", { class: "alarm" }, icon.warn(), ` ${words(lapse.name)}: ${lapseValue(lapse)}`)));

@@ -63,12 +63,12 @@ export class TasksPage implements Page {
   private open(task: TaskInfo): void {
     const { app, dialog } = this;
     const offered = app.hello?.inputs ?? [];
-    const allowed = offered.filter((input) => !task.demonstration || input === "demo");
+    const allowed = offered.filter((input) => (input === "demo" ? task.shown : !task.demonstration));
     const choices = (Object.keys(kInputs) as InputKind[]).map((input) => {
       const usable = allowed.includes(input);
       const radio = h("input", { type: "radio", name: "input", value: input, disabled: !usable, checked: usable && input === allowed[0] });
       return h("label", { class: usable ? "choice" : "choice off" }, radio, h("span", {}, h("strong", {}, kInputs[input][0]), h("br"),
-        usable ? kInputs[input][1] : task.demonstration ? "This task is shown only." : "Nothing of this kind is attached."));
+        usable ? kInputs[input][1] : input === "demo" ? "There is none of this task yet." : task.demonstration ? "This task is shown only." : "Nothing of this kind is attached."));
     });
     const code = h("input", { type: "text", maxlength: 32, pattern: "[A-Za-z0-9_\\-]*", autocomplete: "off", placeholder: "e.g. A17" });
     const others = app.session !== null && app.session.controller > 0 && !app.session.in_control;

@@ -1,5 +1,5 @@
 // What is shown on the tissue besides itself: strain or pressure with its scale, guides for beginners. Nothing of it in an exam.
-import type { ClientMessage, Frame } from "../messages";
+import type { Blood, ClientMessage, Frame } from "../messages";
 import { cividisRamp } from "../scene/palette";
 import { h, setText } from "./dom";
 
@@ -15,6 +15,8 @@ export class TissuePanel {
   private readonly high = h("span", {}, "");
   private readonly most = h("output", { class: "quiet" }, "");
   private readonly caption = h("figcaption", {}, "");
+  private readonly blood = h("section", { hidden: true, "aria-label": "Blood" });
+  private readonly bloodFacts = h("dl", { class: "facts" });
   private kind: Kind = "none";
 
   /// `guides`: how many there are; `onguides` shows or hides them.
@@ -24,7 +26,8 @@ export class TissuePanel {
     this.legend.append(this.caption, h("div", { class: "ramp", style: `background:${cividisRamp()}` }), h("div", { class: "rampticks" }, this.low, this.middle, this.high), this.most);
     this.element = h("section", { class: "panel tissuepanel", "aria-label": "Shown on the tissue" }, h("h3", {}, "Shown on the tissue"),
       h("label", { class: "optic" }, h("span", {}, "Colours"), select), this.legend,
-      guides > 0 ? h("label", { class: "optic" }, box, h("span", {}, "Guides: bites and the needle's way")) : null);
+      guides > 0 ? h("label", { class: "optic" }, box, h("span", {}, "Guides: bites and the needle's way")) : null, this.blood);
+    this.blood.append(h("h3", {}, "Clamps and blood"), this.bloodFacts);
   }
 
   private choose(kind: Kind): void {
@@ -34,7 +37,16 @@ export class TissuePanel {
     if (kind !== "none") setText(this.caption, kWords[kind]);
   }
 
+  private showBlood(blood: Blood): void {
+    this.blood.hidden = false;
+    const leak = blood.leak.reduce((sum, rate) => sum + rate, 0), kMilking = { none: "–", stripping: "held shut by both: strip, then let the first go", filling: "fills", over: "done" };
+    const facts: [string, string][] = [["Upstream clamp (U)", blood.clamps[0].off ? `off, ${blood.pressure[0].toFixed(0)} mmHg` : "on"], ["Downstream clamp (Z)", blood.clamps[1].off ? `off, ${blood.pressure[1].toFixed(0)} mmHg` : "on"]];
+    if (blood.clamps.some((one) => one.off)) facts.push(["Leak", `${leak.toFixed(1)} ml/min`], ["Flow through", `${blood.through.toFixed(2)} ml/min`], ["Lost", `${blood.lost.toFixed(2)} ml`], ["Milking", kMilking[blood.milking]]);
+    this.bloodFacts.replaceChildren(...facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
+  }
+
   show(frame: Frame): void {
+    if (frame.tissue?.blood) this.showBlood(frame.tissue.blood);
     const { overlay } = frame;
     if (!overlay || overlay.kind !== this.kind) return;
     let most = -Infinity;

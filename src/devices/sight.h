@@ -1,0 +1,31 @@
+#pragma once
+// What a scripted hand may look for before it sets out: a key of a demonstration can be given in the frame of something seen
+// (pose_script.h). Devices know nothing of the world; whoever runs both lends the hand eyes.
+
+#include "base/pose.h"
+
+namespace filum {
+
+/// A frame to be found. Axes:
+///   needle  at `length` [m] along its wire from the swage: x outwards, y towards the point, z along the needle's normal
+///   thread  at `length` [m] from the swage or, `from_end`, from the free end: x towards the swage, z as near to upright as may be
+///   entry, exit  of way number `index` (from 0) through the tissue: x, y, z of the scene
+///   tool    number `index`, as it is (not as commanded): z towards the handle, x the way the jaws open
+///   scene   the scene itself
+struct Look {
+  enum class Kind { scene, needle, thread, entry, exit, tool } kind = Kind::scene;
+  int index = 0;
+  double length = 0.0;       // [m]
+  bool from_end = false;
+  bool scene_axes = false;   // the place is seen, directions are the scene's
+  int holder = -1;           // needle: only if this tool holds it, -1 whoever does
+};
+
+class Eyes {
+ public:
+  virtual ~Eyes() = default;
+  /// False if there is no such thing now.
+  virtual bool find(const Look& look, Pose& X_WF) const noexcept = 0;
+};
+
+}  // namespace filum

@@ -1,0 +1,33 @@
+#pragma once
+// The knot of a stitch. The thread closes through the tissue by itself (the part between the bites is thread like any other), so a stitch
+// that is tied is a knotted thread whose knot cannot be had without the bites: the shortest part of the thread that holds the whole knot
+// (knot_classifier.h) reaches over both. A knot in a thread beside the stitch ties nothing.
+//   loop  length of that part: thread in bites and knot together; falls to its least when the knot is drawn down on the wall
+//   tail  the longer of the ends that were cut, or the short end if none was
+// Neglects: two knots in one thread (their sum is named, and the stitches within it all have it). Test: stitch_knot_test.
+
+#include <limits>
+#include <vector>
+
+#include "training/knot_classifier.h"
+#include "training/lapse.h"
+#include "world/observation.h"
+
+namespace filum {
+
+struct StitchKnot {
+  KnotReport knot;
+  double begin = std::numeric_limits<double>::quiet_NaN(), end = begin;  // [m], of the part with the knot, from the thread's short end
+  double tail = begin;                                                   // [m]
+  double loop() const { return end - begin; }
+  /// The thread at `arc` [m] from the short end lies within the knot's loop.
+  bool holds(double arc) const { return arc > begin && arc < end; }
+};
+
+/// `closures`: as in KnotOptions. Takes milliseconds.
+StitchKnot knot_in_tissue(const Observation& o, int closures = 5);
+
+/// Tells each stitch the knot that it is tied with.
+void name_knots(const StitchKnot& knot, const TissueObservation& tissue, std::vector<Stitch>& stitches);
+
+}  // namespace filum

@@ -1,0 +1,136 @@
+#include "training/stitch_knot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "training/needle_watch.h"
+
+namespace filum {
+namespace {
+
+constexpr double kTau = 2.0 * std::numbers::pi;
+
+/// A trefoil of radius `r` [m] opened where it is lowest, with straight ends of `tail` and `rest` [m]: T(2,3) as (2 + cos 3t)(cos 2t, sin 2t), sin 3t.
+Observation trefoil(double r, double tail, double rest, bool knotted = true) {
+  std::vector<Vec3> p;
+  const int n = 120;
+  const double gap = 0.15;
+  const auto at = [&](double t) -> Vec3 {
+    return r * Vec3((2.0 + std::cos(3.0 * t)) * std::cos(2.0 * t), (2.0 + std::cos(3.0 * t)) * std::sin(2.0 * t), knotted ? std::sin(3.0 * t) : 0.4 * t);
+  };
+  const Vec3 first = at(gap), last = at(kTau - gap);
+  for (int k = 20; k > 0; --k) p.push_back(first + Vec3(1, 0.2, 0) * (tail * k / 20.0) / std::hypot(1.0, 0.2));
+  for (int k = 0; k <= n; ++k) p.push_back(at(gap + (kTau - 2.0 * gap) * k / n));
+  for (int k = 1; k <= 20; ++k) p.push_back(last + Vec3(1, -0.2, 0) * (rest * k / 20.0) / std::hypot(1.0, 0.2));
+  Observation o;
+  o.radius = 0.02 * r;
+  o.n_nodes = static_cast<int>(p.size());
+  o.positions = Points::Zero(3, o.n_nodes);
+  double arc = 0.0;
+  for (int k = 0; k < o.n_nodes; ++k) {
+    o.positions.col(k) = p[static_cast<std::size_t>(k)];
+    if (k > 0) arc += (p[static_cast<std::size_t>(k)] - p[static_cast<std::size_t>(k - 1)]).norm();
+    o.arc.push_back(arc);
+  }
+  return o;
+}
+
+/// One stitch of two ways at these places of the thread [m].
+std::vector<Stitch> stitch_at(TissueObservation& tissue, double a, double b) {
+  tissue.n_passes = 2;
+  tissue.passes[0].arc = a;
+  tissue.passes[1].arc = b;
+  Stitch s;
+  s.first = 0;
+  s.second = 1;
+  return {s};
+}
+
+TEST(StitchKnot, AThrowThatReachesOverBothBitesTiesTheStitch) {
+  const Observation o = trefoil(1e-3, 5e-3, 8e-3);
+  const StitchKnot k = knot_in_tissue(o);
+  EXPECT_EQ(k.knot.knot_class, "overhand");
+  EXPECT_EQ(k.knot.n_throws, 1);
+  const double middle = 0.5 * (k.begin + k.end);
+  TissueObservation tissue;
+  auto stitches = stitch_at(tissue, middle - 0.3e-3, middle + 0.3e-3);
+  name_knots(k, tissue, stitches);
+  EXPECT_EQ(stitches[0].knot, "overhand");
+  EXPECT_EQ(stitches[0].throws, 1);
+  EXPECT_NEAR(stitches[0].tail, k.begin, 1e-9) << "nothing cut: the short end up to the knot";
+  EXPECT_GT(stitches[0].tail, 4e-3);
+}
+
+TEST(StitchKnot, AKnotBesideTheStitchTiesNothing) {
+  const Observation o = trefoil(1e-3, 5e-3, 8e-3);
+  TissueObservation tissue;
+  auto stitches = stitch_at(tissue, 1e-3, 2e-3);  // in the short end, before the knot
+  name_knots(knot_in_tissue(o), tissue, stitches);
+  EXPECT_TRUE(stitches[0].knot.empty());
+  EXPECT_EQ(stitches[0].throws, 0);
+  EXPECT_TRUE(std::isnan(stitches[0].tail));
+}
+
+TEST(StitchKnot, AThreadThatIsOnlyDrawnThroughIsNotTied) {
+  const StitchKnot k = knot_in_tissue(trefoil(1e-3, 5e-3, 8e-3, false));
+  EXPECT_EQ(k.knot.knot_class, "unknot");
+  EXPECT_FALSE(k.holds(5e-3));
+}
+
+TEST(StitchKnot, TheLoopShrinksWithTheKnotAndTheTailIsWhatTheCutLeft) {
+  const StitchKnot wide = knot_in_tissue(trefoil(1e-3, 5e-3, 8e-3)), narrow = knot_in_tissue(trefoil(0.5e-3, 5e-3, 8e-3));
+  EXPECT_NEAR(narrow.loop(), 0.5 * wide.loop(), 0.1 * wide.loop());
+  Observation cut = trefoil(1e-3, 5e-3, 8e-3);
+  cut.cut_edge_low = 9;  // half of the short end is gone
+  const StitchKnot k = knot_in_tissue(cut);
+  EXPECT_NEAR(k.tail, k.begin - cut.arc[10], 1e-9) << "the long end is still whole";
+  EXPECT_LT(k.tail, 0.75 * knot_in_tissue(trefoil(1e-3, 5e-3, 8e-3)).tail);
+}
+
+TEST(StitchKnot, TyingIsDoneWhenTheKnotHoldsTheBitesAndIsDrawnDown) {
+  NeedleGoal tie, cut;
+  tie.kind = NeedleGoal::Kind::tie;
+  tie.passes = 2;
+  tie.throws = 1;
+  tie.loop = 0.75 * knot_in_tissue(trefoil(1e-3, 5e-3, 8e-3)).loop();
+  tie.seconds = 0.3;
+  cut.kind = NeedleGoal::Kind::cut;
+  NeedleTask task;
+  task.goals = {tie, cut};
+  task.has_tissue = true;
+  NeedleWatch watch(task, {});
+  std::vector<TaskEvent> events;
+  const auto look = [&](Observation o, double from, bool beside = false) {
+    const StitchKnot k = knot_in_tissue(o);
+    o.tissue.n_passes = 2;
+    for (std::size_t i = 0; i < 2; ++i) {
+      o.tissue.passes[i].out = true;
+      o.tissue.passes[i].state = PassObservation::State::thread;
+      o.tissue.passes[i].arc = beside ? 1e-3 : 0.5 * (k.begin + k.end) + (i == 0 ? -1e-4 : 1e-4);
+    }
+    for (int step = 0; step < 8; ++step) {
+      o.time = from + 0.1 * step;
+      watch.observe(o, 0.1, true, events);
+    }
+  };
+  look(trefoil(1e-3, 5e-3, 8e-3), 0.0);
+  EXPECT_EQ(watch.step(), 0) << "too wide";
+  look(trefoil(0.5e-3, 5e-3, 8e-3, false), 1.0);
+  EXPECT_EQ(watch.step(), 0) << "no knot";
+  look(trefoil(0.5e-3, 5e-3, 8e-3), 2.0, true);
+  EXPECT_EQ(watch.step(), 0) << "beside the stitch";
+  look(trefoil(0.5e-3, 5e-3, 8e-3), 3.0);
+  EXPECT_EQ(watch.step(), 1);
+  Observation o = trefoil(0.5e-3, 5e-3, 8e-3);
+  o.cut_edge_low = 3;
+  watch.observe(o, 0.1, true, events);
+  EXPECT_EQ(watch.step(), 1) << "one end is still whole";
+  o.cut_edge_high = 150;
+  watch.observe(o, 0.1, true, events);
+  EXPECT_TRUE(watch.done());
+}
+
+}  // namespace
+}  // namespace filum
