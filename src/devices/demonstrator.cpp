@@ -27,6 +27,23 @@ bool Demonstrator::look(PoseTrack& track) {
   return true;
 }
 
+/// What is lost from sight is expected where it was; a tool in whose grip the hand brings the needle is taken to hold it as it did.
+void Demonstrator::go_on_looking(PoseTrack& track, double t) {
+  const PoseLook* look = track.followed(t);
+  Pose X_WF;
+  if (look != nullptr && eyes_ != nullptr && eyes_->find(look->at, X_WF)) track.follow(X_WF, 1e-6 * kPeriod);
+}
+
+void Demonstrator::feel(PoseTrack& track, double t) {
+  int& felt = felt_[static_cast<std::size_t>(track.tool())];
+  const double enough = track.stops_at_pull(t);
+  const bool pulls = enough > 0.0 && eyes_ != nullptr && eyes_->felt(track.tool()) >= enough;
+  felt = pulls ? felt + 1 : 0;
+  if (felt < kFelt) return;
+  track.halt(t);
+  felt = 0;
+}
+
 /// The first tool that looks in vain at time t [s] of the script, -1 if none does.
 int Demonstrator::blocked_at(double t) {
   for (int tool = 0; tool < kMaxTools; ++tool) {
@@ -51,6 +68,10 @@ void Demonstrator::poll(std::int64_t now_us, std::vector<DeviceSample>& out) noe
     const int blocked = blocked_at(t);
     for (int tool = 0; tool < kMaxTools; ++tool) {
       if (!script_.has_tool(tool)) continue;
+      if (blocked < 0) {
+        go_on_looking(script_.track(tool), t);
+        feel(script_.track(tool), t);
+      }
       DeviceSample sample = script_.at(tool, t);
       sample.host_time_us = sample.device_time_us = next_us_;
       sample.sequence = static_cast<std::uint32_t>(next_us_ / kPeriod);

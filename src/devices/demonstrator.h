@@ -2,8 +2,10 @@
 // Plays a scripted demonstration (pose_script.h) as a device: one sample a tool at every millisecond of scene
 // time, so that what a step is driven by does not depend on when poll() happened to be called. Keys given in the frame of something seen
 // are looked for when the hand sets out; while it is not there, the script's clock stands still for all hands, the samples of the one that
-// looks for it say so (kNotSeen), and after ten seconds the demonstration is over.
+// looks for it say so (kNotSeen), and after ten seconds the demonstration is over. A hand that stops where it feels a pull, or that follows
+// what it sees, changes its own track only; the script's clock goes on.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -29,9 +31,12 @@ class Demonstrator final : public Device {
  private:
   static constexpr std::int64_t kPeriod = 1000;            // [us]
   static constexpr std::int64_t kPatience = 10'000'000;    // [us]
+  static constexpr int kFelt = 10;                         // samples in a row with a pull before the hand stops: a shorter one is a snap
 
   int blocked_at(double t);
   bool look(PoseTrack& track);
+  void go_on_looking(PoseTrack& track, double t);
+  void feel(PoseTrack& track, double t);
 
   PoseScript script_;
   std::string name_;
@@ -39,6 +44,7 @@ class Demonstrator final : public Device {
   std::int64_t waited_us_ = 0, waiting_us_ = 0;  // [us], in all; since when nothing was found, in a row
   std::int64_t next_us_ = 0;  // [us], scene time of the next sample
   std::uint64_t moved_ = 0;   // tools the script moves
+  std::array<int, kMaxTools> felt_{};  // samples in a row
   DeviceHealth health_;
 };
 

@@ -2,19 +2,11 @@
 
 namespace filum {
 
-std::vector<double> monotone_slopes(const std::vector<double>& times, const std::vector<double>& values,
-                                    const std::vector<bool>& rest) {
-  std::vector<double> slopes(times.size(), 0.0);
-  for (std::size_t i = 1; i + 1 < times.size(); ++i) {
-    if (rest[i]) continue;
-    const double h0 = times[i] - times[i - 1], h1 = times[i + 1] - times[i];
-    const double d0 = (values[i] - values[i - 1]) / h0, d1 = (values[i + 1] - values[i]) / h1;
-    const bool same_sign = (d0 > 0.0 && d1 > 0.0) || (d0 < 0.0 && d1 < 0.0);
-    if (!same_sign) continue;
-    const double w0 = 2.0 * h1 + h0, w1 = h1 + 2.0 * h0;
-    slopes[i] = (w0 + w1) / (w0 / d0 + w1 / d1);
-  }
-  return slopes;
+double monotone_slope(double h0, double h1, double d0, double d1) noexcept {
+  const bool same_sign = (d0 > 0.0 && d1 > 0.0) || (d0 < 0.0 && d1 < 0.0);
+  if (!same_sign) return 0.0;
+  const double w0 = 2.0 * h1 + h0, w1 = h1 + 2.0 * h0;
+  return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
 double hermite(double y0, double y1, double m0, double m1, double h, double u) noexcept {

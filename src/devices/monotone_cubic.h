@@ -4,14 +4,11 @@
 // F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304, which needs no second pass over
 // the slopes.
 
-#include <vector>
-
 namespace filum {
 
-/// Slopes at the knots [value/s]. Zero at both ends, wherever `rest[i]` is set and wherever the data turn
-/// round, so equal neighbours hold still. `times` must grow strictly; all three have the same size.
-std::vector<double> monotone_slopes(const std::vector<double>& times, const std::vector<double>& values,
-                                    const std::vector<bool>& rest);
+/// Slope at an inner knot [value/s] from the distances h0, h1 [s] and the rates of change d0, d1 [value/s] before and after it. Zero where the
+/// data turn round, so equal neighbours hold still; the ends, and knots that are to be at rest, have none.
+double monotone_slope(double h0, double h1, double d0, double d1) noexcept;
 
 /// Cubic on one interval: values y0, y1 and slopes m0, m1 at its ends, h its length [s], u in [0, 1] the
 /// place in it.

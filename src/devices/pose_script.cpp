@@ -23,7 +23,12 @@
 //       - { t: 4 s, at: { needle: 3.4 mm }, p: [2 mm, 0 mm, 0 mm], handle: [0, 0, 1], opening: [1, 0, 0] }
 //   at: { needle: ARC from the swage } { thread: LENGTH, from: swage | end } { entry: N } { exit: N } { tool: N }; N as in "the first way
 //   through the tissue" from 1, tools from 0. With `axes: scene` the place is seen and directions stay the scene's; with `bring: ARC` the
-//   keys are poses of the needle there (opening: outwards, handle: its normal), and the tool carries it as it then holds it.
+//   keys are poses of the needle there (opening: outwards, handle: its normal), and the tool carries it as it then holds it. With
+//   `follow: true` the hand does not look once but all the way, and goes after what moves (with a lag of 0.1 s); what it loses sight of it
+//   expects where it was.
+// A hand that pulls may feel when it is enough: it stops on its way where the scene has pulled at its tool as hard for 10 ms, and stays there
+// until the key's time and through the keys after it that give no place. If it never does, it goes all the way:
+//       - { t: 6 s, p: [0 mm, 9 mm, 1 mm], until: { pull: 15 mN } }
 // A tool may have `tremor: { rms: 60 um, frequency: 9 Hz, width: 2 Hz }`.
 
 namespace filum {
@@ -56,9 +61,9 @@ Vec3 read_direction(const YamlNode& node, const std::string& key) {
 PoseLook read_look(const YamlNode& node, int tool) {
   static const std::pair<const char*, Look::Kind> kKinds[] = {{"needle", Look::Kind::needle}, {"thread", Look::Kind::thread}, {"entry", Look::Kind::entry},
                                                               {"exit", Look::Kind::exit},     {"tool", Look::Kind::tool}};
-  static const std::string kWords[] = {"needle", "thread", "entry", "exit", "tool", "from", "axes", "bring"};
+  static const std::string kWords[] = {"needle", "thread", "entry", "exit", "tool", "from", "axes", "bring", "follow"};
   for (const std::string& key : node.keys())
-    if (std::find(std::begin(kWords), std::end(kWords), key) == std::end(kWords)) node.refuse(key, "needle, thread, entry, exit or tool, with from, axes, bring");
+    if (std::find(std::begin(kWords), std::end(kWords), key) == std::end(kWords)) node.refuse(key, "needle, thread, entry, exit or tool, with from, axes, bring, follow");
   PoseLook look;
   for (const auto& [name, kind] : kKinds) {
     if (!node.has(name)) continue;
@@ -74,6 +79,9 @@ PoseLook read_look(const YamlNode& node, int tool) {
   if (look.at.kind == Look::Kind::thread) look.at.from_end = node.choice("from", {"swage", "end"}) == "end";
   if (node.has("axes")) look.at.scene_axes = node.choice("axes", {"scene"}) == "scene";
   if (node.has("bring")) look.bring = node.quantity("bring", "m", Range::between(0.0, 0.05));
+  look.follow = node.flag_or("follow", false);
+  if (look.follow && look.at.kind == Look::Kind::scene) node.refuse("follow", "something to follow: needle, thread, entry, exit or tool");
+  if (look.follow && look.at.kind == Look::Kind::tool && look.at.index == tool) node.refuse("tool", "another tool than the one that follows");
   if (look.bring && look.at.kind == Look::Kind::tool && look.at.index == tool) node.refuse("tool", "another tool than the one that brings the needle");
   return look;
 }
@@ -100,6 +108,7 @@ class KeyReader {
         node.quantity_or("grip_force", "N", first ? 0.0 : last_.grip_force, Range::between(0.0, 50.0));
     key.buttons = read_buttons(node);
     key.stop = node.flag_or("stop", false);
+    read_until(node, first, key);
     key.say = node.text_or("say", first ? "" : last_.say);
     last_ = key;
     return key;
@@ -122,6 +131,14 @@ class KeyReader {
     if (look.at.kind == Look::Kind::scene && !look.bring) return;
     key.look = static_cast<int>(looks_.size());
     looks_.push_back(look);
+  }
+
+  void read_until(const YamlNode& node, bool first, PoseKey& key) const {
+    key.keeps_place = !node.has("p") && !node.has("arc");
+    key.keeps_turn = !node.has("handle") && !node.has("opening");
+    if (!node.has("until")) return;
+    if (first) node.refuse("until", "none on the first key: the hand feels on its way");
+    key.until_pull = node.map("until").quantity("pull", "N", {1e-4, 10.0, false});
   }
 
   void read_tip(const YamlNode& node, bool first, PoseKey& key) const {

@@ -10,6 +10,7 @@ namespace filum {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFollowing = 0.1;  // [s], a hand lags what its eyes follow by about as much [P]
 
 double minimum_jerk(double u) noexcept {
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
@@ -21,13 +22,6 @@ double smoothstep(double u) noexcept {
 Vec3 radial_part(const PoseArc& arc, const Vec3& p) noexcept {
   const Vec3 d = p - arc.centre_W;
   return d - d.dot(arc.axis_W) * arc.axis_W;
-}
-
-std::vector<double> column(const std::vector<PoseKey>& keys, double (*pick)(const PoseKey&)) {
-  std::vector<double> values;
-  values.reserve(keys.size());
-  for (const PoseKey& key : keys) values.push_back(pick(key));
-  return values;
 }
 
 }  // namespace
@@ -60,8 +54,11 @@ Vec3 arc_point(const PoseArc& arc, const Vec3& p0, const Vec3& p1, double s) noe
 
 PoseTrack::PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force, std::vector<PoseLook> looks)
     : tool_(tool), keys_(std::move(keys)), looks_(std::move(looks)), has_grip_force_(has_grip_force) {
-  // The hand looks at rest, so that what it did before does not depend on what it will see.
-  for (std::size_t i = 0; i + 1 < keys_.size(); ++i) keys_[i].stop = keys_[i].stop || keys_[i + 1].look != keys_[i].look;
+  // The hand looks at rest, so that what it did before does not depend on what it will see; the same where it may stop.
+  for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
+    const bool may_stop = keys_[i].until_pull > 0.0 || keys_[i + 1].until_pull > 0.0;
+    keys_[i].stop = keys_[i].stop || may_stop || keys_[i + 1].look != keys_[i].look;
+  }
   written_ = keys_;
   for (std::size_t i = 1; i < keys_.size(); ++i) {
     if (keys_[i].look < 0) continue;
@@ -69,25 +66,27 @@ PoseTrack::PoseTrack(int tool, std::vector<PoseKey> keys, bool has_grip_force, s
     keys_[i].q = keys_[i - 1].q;
     keys_[i].arc.reset();
   }
+  tip_slopes_.assign(keys_.size(), Vec3::Zero());
+  angle_slopes_.assign(keys_.size(), 0.0);
+  force_slopes_.assign(keys_.size(), 0.0);
   smooth();
 }
 
-void PoseTrack::smooth() {
-  const std::size_t n = keys_.size();
-  std::vector<bool> stop(n), tip_rest(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    stop[i] = keys_[i].stop;
-    // An arc starts and ends at rest, so the neighbouring cubics must too.
-    tip_rest[i] = stop[i] || keys_[i].arc.has_value() || (i + 1 < n && keys_[i + 1].arc.has_value());
+/// An arc starts and ends at rest, so the cubics of the tip beside it must too.
+bool PoseTrack::at_rest(std::size_t i, bool tip) const noexcept {
+  return keys_[i].stop || (tip && (keys_[i].arc.has_value() || (i + 1 < keys_.size() && keys_[i + 1].arc.has_value())));
+}
+
+void PoseTrack::smooth() noexcept {
+  for (std::size_t i = 1; i + 1 < keys_.size(); ++i) {
+    const PoseKey &a = keys_[i - 1], &k = keys_[i], &b = keys_[i + 1];
+    const double h0 = k.t - a.t, h1 = b.t - k.t;
+    const auto slope = [&](double y0, double y1, double y2) { return monotone_slope(h0, h1, (y1 - y0) / h0, (y2 - y1) / h1); };
+    const bool rest = at_rest(i, false), tip_rest = at_rest(i, true);
+    for (int c = 0; c < 3; ++c) tip_slopes_[i][c] = tip_rest ? 0.0 : slope(a.p_W[c], k.p_W[c], b.p_W[c]);
+    angle_slopes_[i] = rest ? 0.0 : slope(a.grip_angle, k.grip_angle, b.grip_angle);
+    force_slopes_[i] = rest ? 0.0 : slope(a.grip_force, k.grip_force, b.grip_force);
   }
-  const auto t = column(keys_, [](const PoseKey& k) { return k.t; });
-  const auto x = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.p_W.x(); }), tip_rest);
-  const auto y = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.p_W.y(); }), tip_rest);
-  const auto z = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.p_W.z(); }), tip_rest);
-  angle_slopes_ = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.grip_angle; }), stop);
-  force_slopes_ = monotone_slopes(t, column(keys_, [](const PoseKey& k) { return k.grip_force; }), stop);
-  tip_slopes_.clear();
-  for (std::size_t i = 0; i < n; ++i) tip_slopes_.emplace_back(x[i], y[i], z[i]);
 }
 
 std::size_t PoseTrack::first_of(std::size_t look) const noexcept {
@@ -98,22 +97,73 @@ std::size_t PoseTrack::first_of(std::size_t look) const noexcept {
 
 double PoseTrack::look_time() const noexcept { return keys_[first_of(taken_) - 1].t; }
 
-void PoseTrack::set_out(const Pose& X_WF, const Pose& X_AT) {
-  const int look = static_cast<int>(taken_);
-  std::size_t i = first_of(taken_++);
-  for (; i < keys_.size() && keys_[i].look == look; ++i) {
-    const Pose X_WT = X_WF * Pose{written_[i].p_W, written_[i].q} * X_AT;
+/// The keys of a look where its frame is now.
+void PoseTrack::place_keys(std::size_t look) noexcept {
+  for (std::size_t i = first_of(look); i < keys_.size() && keys_[i].look == static_cast<int>(look); ++i) {
+    const Pose X_WT = X_WF_ * Pose{written_[i].p_W, written_[i].q} * X_AT_;
     keys_[i].p_W = X_WT.p;
     keys_[i].q = X_WT.q.normalized();
     keys_[i].arc = written_[i].arc;
     if (!keys_[i].arc) continue;
-    keys_[i].arc->centre_W = X_WF * written_[i].arc->centre_W;
-    keys_[i].arc->axis_W = X_WF.q * written_[i].arc->axis_W;
+    keys_[i].arc->centre_W = X_WF_ * written_[i].arc->centre_W;
+    keys_[i].arc->axis_W = X_WF_.q * written_[i].arc->axis_W;
   }
-  for (; i < keys_.size() && keys_[i].look >= 0; ++i) {  // not seen yet
-    keys_[i].p_W = keys_[i - 1].p_W;
-    keys_[i].q = keys_[i - 1].q;
+}
+
+/// Keys after i that give no place or direction of their own, or that look for what is not seen yet, have those of the key before.
+void PoseTrack::keep_from(std::size_t i) noexcept {
+  bool place = true, turn = true;
+  for (++i; i < keys_.size(); ++i) {
+    const bool unseen = keys_[i].look >= static_cast<int>(taken_);
+    place = unseen || (place && keys_[i].keeps_place);
+    turn = unseen || (turn && keys_[i].keeps_turn);
+    if (place) keys_[i].p_W = keys_[i - 1].p_W;
+    if (turn) keys_[i].q = keys_[i - 1].q;
   }
+}
+
+void PoseTrack::set_out(const Pose& X_WF, const Pose& X_AT) {
+  const std::size_t look = taken_++;
+  X_WF_ = X_WF;
+  X_AT_ = X_AT;
+  place_keys(look);
+  std::size_t last = first_of(look);
+  while (last + 1 < keys_.size() && keys_[last + 1].look == static_cast<int>(look)) ++last;
+  keep_from(last);
+  smooth();
+}
+
+const PoseLook* PoseTrack::followed(double t) const noexcept {
+  if (taken_ == 0 || !looks_[taken_ - 1].follow) return nullptr;
+  const std::size_t i = key_at(t) + 1;
+  if (i >= keys_.size() || keys_[i].look != static_cast<int>(taken_ - 1)) return nullptr;
+  return halted_ < first_of(taken_ - 1) ? &looks_[taken_ - 1] : nullptr;
+}
+
+void PoseTrack::follow(const Pose& X_WF, double dt) noexcept {
+  const double share = 1.0 - std::exp(-dt / kFollowing);
+  X_WF_.p += share * (X_WF.p - X_WF_.p);
+  X_WF_.q = X_WF_.q.slerp(share, X_WF.q).normalized();
+  place_keys(taken_ - 1);
+  smooth();
+}
+
+double PoseTrack::stops_at_pull(double t) const noexcept {
+  const std::size_t i = key_at(t) + 1;
+  return i < keys_.size() && t > keys_[i - 1].t && halted_ != i ? keys_[i].until_pull : 0.0;
+}
+
+void PoseTrack::halt(double t) noexcept {
+  const DeviceSample now = steady_at(t);
+  const std::size_t i = key_at(t);
+  keys_[i].t = t;
+  keys_[i].p_W = keys_[i + 1].p_W = now.X_WD.p;
+  keys_[i].q = keys_[i + 1].q = now.X_WD.q;
+  keys_[i].grip_angle = now.grip_angle;
+  keys_[i].grip_force = now.grip_force;
+  keys_[i + 1].arc.reset();
+  halted_ = i + 1;
+  keep_from(i + 1);
   smooth();
 }
 

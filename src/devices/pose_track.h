@@ -34,11 +34,15 @@ struct PoseKey {
   std::optional<PoseArc> arc;  // how the tip gets here from the key before
   std::string say;             // told to the trainee from here to the next key that says something
   int look = -1;               // of the track's looks, in whose frame pose and arc are; -1 the scene
+  double until_pull = 0.0;     // [N], the hand stops on its way here when it feels as much; 0 never
+  bool keeps_place = false;    // gives no place of its own, nor (next) a direction: those of the key before
+  bool keeps_turn = false;
 };
 
 /// What the hand looks at when it sets out for the first of the keys given in its frame, that is at the key before.
 struct PoseLook {
   Look at;
+  bool follow = false;          // it goes on looking until it has got to the last of these keys
   std::optional<double> bring;  // [m], arc of the needle: the keys are poses of the needle there, and the tool carries it as it then holds it
 };
 
@@ -66,6 +70,14 @@ class PoseTrack {
   double look_time() const noexcept;
   /// Takes it: X_WF is the frame seen; X_AT the tool in the frame of the needle it brings, identity if it brings none.
   void set_out(const Pose& X_WF, const Pose& X_AT);
+  /// What the hand follows at time t [s] on its way, null if nothing (left).
+  const PoseLook* followed(double t) const noexcept;
+  /// Moves the frame that is followed towards where it is seen now, as far as a hand gets in `dt` [s]. Allocates nothing.
+  void follow(const Pose& X_WF, double dt) noexcept;
+  /// [N], at which the hand stops on its way at time t [s]; 0: it does not.
+  double stops_at_pull(double t) const noexcept;
+  /// It stops where it is at time t [s] and stays for the rest of the way to the next key. Allocates nothing.
+  void halt(double t) noexcept;
 
   /// Adds a tremor to the tip from now on.
   void shake(const HandTremor& tremor) { tremor_ = tremor; }
@@ -80,7 +92,10 @@ class PoseTrack {
  private:
   DeviceSample steady_at(double t) const noexcept;
   std::size_t first_of(std::size_t look) const noexcept;
-  void smooth();
+  void place_keys(std::size_t look) noexcept;
+  void keep_from(std::size_t i) noexcept;
+  void smooth() noexcept;
+  bool at_rest(std::size_t i, bool tip) const noexcept;
   Vec3 tip_in_segment(std::size_t i, double u) const noexcept;
 
   int tool_;
@@ -88,6 +103,8 @@ class PoseTrack {
   std::vector<PoseKey> written_;       // as read, in their frames
   std::vector<PoseLook> looks_;
   std::size_t taken_ = 0;              // looks
+  Pose X_WF_, X_AT_;                   // of the last look taken
+  std::size_t halted_ = 0;             // key on the way to which the hand stopped last
   bool has_grip_force_;
   std::optional<HandTremor> tremor_;
   std::vector<Vec3> tip_slopes_;      // [m/s]

@@ -1,6 +1,6 @@
 #pragma once
-// What a scripted hand may look for before it sets out: a key of a demonstration can be given in the frame of something seen
-// (pose_script.h). Devices know nothing of the world; whoever runs both lends the hand eyes.
+// What a scripted hand may look for before it sets out, and what it feels: a key of a demonstration can be given in the frame of something
+// seen, and can end where a pull is felt (pose_script.h). Devices know nothing of the world; whoever runs both lends the hand eyes.
 
 #include "base/pose.h"
 
@@ -26,6 +26,8 @@ class Eyes {
   virtual ~Eyes() = default;
   /// False if there is no such thing now.
   virtual bool find(const Look& look, Pose& X_WF) const noexcept = 0;
+  /// [N], magnitude of what the scene pulls or pushes at a tool now; 0 if there is no such tool.
+  virtual double felt(int /*tool*/) const noexcept { return 0.0; }
 };
 
 }  // namespace filum

@@ -53,6 +53,10 @@ bool SceneEyes::find_pass(const Look& look, Pose& X_WF) const noexcept {
   return true;
 }
 
+double SceneEyes::felt(int tool) const noexcept {
+  return tool >= 0 && tool < observation_.n_tools ? observation_.tools[static_cast<std::size_t>(tool)].f_T_W.norm() : 0.0;
+}
+
 bool SceneEyes::find(const Look& look, Pose& X_WF) const noexcept {
   bool found = true;
   switch (look.kind) {

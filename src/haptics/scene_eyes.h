@@ -12,6 +12,7 @@ class SceneEyes final : public Eyes {
   SceneEyes(const Observation& observation, const SceneDescription& scene) : observation_(observation), scene_(scene) {}
 
   bool find(const Look& look, Pose& X_WF) const noexcept override;
+  double felt(int tool) const noexcept override;
 
  private:
   bool find_needle(const Look& look, Pose& X_WF) const noexcept;

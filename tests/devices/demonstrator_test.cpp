@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "devices/sample_faults.h"
 
 namespace filum {
@@ -179,6 +182,101 @@ TEST(Demonstrator, WaitsWithAllHandsForWhatIsNotThereAndSaysSo) {
   for (std::int64_t now = 301'000; now <= 401'000; now += 1000) device.poll(now, out);
   EXPECT_EQ(out.front().buttons & kNotSeen, 0u);
   EXPECT_NEAR((pose_at(out, 401'000).p - eyes.thread * Vec3(0, 0, 2e-3)).norm(), 0.0, 1e-15);
+}
+
+const char* kPulling = R"(
+format: filum-demonstration/1
+title: A hand that pulls
+tools:
+  - tool: 0
+    keys:
+      - { t: "0 s", p: ["0 mm", "0 mm", "0 mm"], handle: [0, 0, 1], opening: [1, 0, 0], grip: "-4 deg" }
+      - { t: "100 ms", p: ["1 mm", "0 mm", "0 mm"] }
+      - { t: "500 ms", p: ["9 mm", "0 mm", "0 mm"], handle: [0, 1, 0], until: { pull: "15 mN" } }
+      - { t: "600 ms", grip: "5 deg" }
+      - { t: "700 ms", p: ["1 mm", "2 mm", "0 mm"] }
+)";
+
+/// A spring that hangs on tool 0 from x = 3 mm on; and a snap of half its reach in time.
+struct SpringEyes final : Eyes {
+  const std::vector<DeviceSample>* samples = nullptr;
+  double stiffness = 10.0;  // [N/m]
+  bool snaps = false;
+  bool find(const Look&, Pose&) const noexcept override { return false; }
+  double felt(int tool) const noexcept override {
+    if (tool != 0 || samples->empty()) return 0.0;
+    if (snaps && samples->back().host_time_us / 5000 % 2 == 0 && samples->back().X_WD.p.x() < 2e-3) return 1.0;
+    return std::max(0.0, stiffness * (samples->back().X_WD.p.x() - 3e-3));
+  }
+};
+
+std::vector<DeviceSample> pull(Demonstrator& device, SpringEyes& eyes) {
+  std::vector<DeviceSample> out;
+  out.reserve(2000);
+  eyes.samples = &out;
+  device.look_through(&eyes);
+  for (std::int64_t now = 0; now <= 800'000; now += 1000) device.poll(now, out);
+  return out;
+}
+
+TEST(Demonstrator, StopsWhereItFeelsThePullAndStaysForTheKeysThatGiveNoPlace) {
+  for (const bool snaps : {false, true}) {
+    Demonstrator device(PoseScript::parse(kPulling, "pulling.yaml"));
+    SpringEyes eyes;
+    eyes.snaps = snaps;
+    const auto samples = pull(device, eyes);
+    const Pose there = pose_at(samples, 500'000);
+    // 15 mN at 4.5 mm; ten samples later, at 30 mm/s in the middle of the way, it has gone on by as much as 0.3 mm.
+    EXPECT_GE(there.p.x(), 4.5e-3);
+    EXPECT_LT(there.p.x(), 4.85e-3) << "snaps " << snaps;
+    EXPECT_GT(there.q.angularDistance(pose_at(samples, 100'000).q), 0.1);
+    EXPECT_LT(there.q.angularDistance(pose_at(samples, 100'000).q), 1.5) << "it does not go on turning";
+    for (const std::int64_t t : {400'000, 550'000, 600'000}) {
+      EXPECT_EQ(pose_at(samples, t).p, there.p) << t;
+      EXPECT_EQ(pose_at(samples, t).q.coeffs(), there.q.coeffs()) << t;
+    }
+    EXPECT_NEAR((pose_at(samples, 700'000).p - Vec3(1e-3, 2e-3, 0)).norm(), 0.0, 1e-15) << "and goes on from there";
+    EXPECT_NEAR(samples.back().grip_angle, 5.0 / 57.29578, 1e-6);
+    for (std::size_t i = 1; i < samples.size(); ++i) EXPECT_LT((samples[i].X_WD.p - samples[i - 1].X_WD.p).norm(), 0.07e-3) << i;
+  }
+}
+
+TEST(Demonstrator, GoesAllTheWayWhereItFeelsTooLittle) {
+  Demonstrator device(PoseScript::parse(kPulling, "pulling.yaml"));
+  SpringEyes eyes;
+  eyes.stiffness = 2.0;
+  const auto samples = pull(device, eyes);
+  EXPECT_NEAR((pose_at(samples, 600'000).p - Vec3(9e-3, 0, 0)).norm(), 0.0, 1e-15);
+}
+
+const char* kFollowing = R"(
+format: filum-demonstration/1
+title: A hand that follows
+tools:
+  - tool: 0
+    keys:
+      - { t: "0 s", p: ["9 mm", "0 mm", "0 mm"], handle: [0, 0, 1], opening: [1, 0, 0], grip: "0 deg" }
+      - { t: "500 ms", at: { thread: "1 mm", from: end, axes: scene, follow: true }, p: ["0 mm", "0 mm", "2 mm"], handle: [0, 0, 1], opening: [1, 0, 0] }
+      - { t: "1500 ms", p: ["0 mm", "0 mm", "0 mm"] }
+      - { t: "1600 ms", at: {}, p: ["0 mm", "0 mm", "9 mm"], handle: [0, 0, 1], opening: [1, 0, 0] }
+)";
+
+TEST(Demonstrator, FollowsWhatMovesUntilItIsThere) {
+  Demonstrator device(PoseScript::parse(kFollowing, "following.yaml"));
+  MadeUpEyes eyes;
+  eyes.thread = {Vec3(1e-3, 2e-3, 3e-3), Quat::Identity()};
+  device.look_through(&eyes);
+  std::vector<DeviceSample> out;
+  for (std::int64_t now = 0; now <= 1'600'000; now += 1000) {
+    if (now == 200'000) eyes.thread.p.x() += 1e-3;   // it jumps once
+    if (now == 1'510'000) eyes.thread.p.x() += 1e-3;  // and when the hand is on its way elsewhere
+    eyes.thread_there = now < 1'000'000;
+    device.poll(now, out);
+  }
+  EXPECT_NEAR((pose_at(out, 500'000).p - Vec3(2e-3, 2e-3, 5e-3)).norm(), 1e-3 * std::exp(-3.0), 0.02e-3) << "lags by 0.1 s";
+  EXPECT_NEAR((pose_at(out, 1'500'000).p - Vec3(2e-3, 2e-3, 3e-3)).norm(), 0.0, 1e-6) << "stays where it was last seen";
+  EXPECT_NEAR((pose_at(out, 1'600'000).p - Vec3(0, 0, 9e-3)).norm(), 0.0, 1e-15);
+  for (std::size_t i = 1; i < out.size(); ++i) EXPECT_LT((out[i].X_WD.p - out[i - 1].X_WD.p).norm(), 0.2e-3) << i;
 }
 
 TEST(Demonstrator, IsOverAfterTenSecondsInVain) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace filum {
 namespace {
@@ -12,6 +13,16 @@ namespace {
 double value_at(const std::vector<double>& t, const std::vector<double>& y, const std::vector<double>& m,
                 std::size_t i, double u) {
   return hermite(y[i], y[i + 1], m[i], m[i + 1], t[i + 1] - t[i], u);
+}
+
+/// Slopes at all knots, as a track makes them.
+std::vector<double> monotone_slopes(const std::vector<double>& t, const std::vector<double>& y, const std::vector<bool>& rest) {
+  std::vector<double> slopes(t.size(), 0.0);
+  for (std::size_t i = 1; i + 1 < t.size(); ++i) {
+    const double h0 = t[i] - t[i - 1], h1 = t[i + 1] - t[i];
+    if (!rest[i]) slopes[i] = monotone_slope(h0, h1, (y[i] - y[i - 1]) / h0, (y[i + 1] - y[i]) / h1);
+  }
+  return slopes;
 }
 
 TEST(MonotoneCubic, StaysBetweenItsKnotsForRandomData) {

@@ -49,6 +49,16 @@ TEST(SceneEyes, TheFreeEndIsTheOneThatIsLeftAfterACut) {
   EXPECT_NEAR((s.seen.p - Vec3(2e-3, 0, 0)).norm(), 0.0, 1e-15);
 }
 
+TEST(SceneEyes, APullIsFeltByItsOwnToolOnly) {
+  Scene s;
+  s.o.tools[1].f_T_W = Vec3(3e-3, 0, -4e-3);
+  EXPECT_DOUBLE_EQ(s.eyes.felt(1), 5e-3);
+  EXPECT_EQ(s.eyes.felt(0), 0.0);
+  s.o.tools[2].f_T_W = Vec3(1, 0, 0);
+  EXPECT_EQ(s.eyes.felt(2), 0.0) << "there is no third tool";
+  EXPECT_EQ(s.eyes.felt(-1), 0.0);
+}
+
 TEST(SceneEyes, NeedlesFrameFollowsItsCurve) {
   Scene s;
   EXPECT_FALSE(s.eyes.find({.kind = Look::Kind::needle}, s.seen)) << "there is none";
