@@ -30,7 +30,8 @@ bool SceneEyes::find_needle(const Look& look, Pose& X_WF) const noexcept {
 
 bool SceneEyes::find_thread(const Look& look, Pose& X_WF) const noexcept {
   const Observation& o = observation_;
-  const int first = o.cut_edge_low + 1, last = o.n_nodes - 1;  // what was cut off the short end is gone
+  const bool on_needle = o.needle.present && o.n_parted > 0;  // of a thread that was cut the piece on the needle is meant
+  const int first = on_needle ? o.parted[static_cast<std::size_t>(o.n_parted - 1)] + 1 : o.cut_edge_low + 1, last = o.n_nodes - 1;
   const auto arc = [&](int k) { return o.arc[static_cast<std::size_t>(k)]; };
   if (last <= first) return false;
   const double a = look.from_end ? arc(first) + look.length : arc(last) - look.length;

@@ -102,9 +102,14 @@ void write_tool(FrameWriter& w, const ToolObservation& tool) {
 
 void write_cuts(FrameWriter& w, const Observation& o) {
   w.raw(",\"cuts\":[");
-  if (o.cut_edge_low >= 0) w.whole(o.cut_edge_low);
-  if (o.cut_edge_low >= 0 && o.cut_edge_high >= 0) w.raw(",");
-  if (o.cut_edge_high >= 0) w.whole(o.cut_edge_high);
+  bool first = true;
+  for (int k = 0; k < o.n_parted; ++k) {
+    const int edge = o.parted[static_cast<std::size_t>(k)];
+    if (edge == o.break_edge) continue;
+    if (!first) w.raw(",");
+    w.whole(edge);
+    first = false;
+  }
   w.raw("]");
 }
 

@@ -19,8 +19,9 @@ struct NeedleGoal {
   Vec3 out = Vec3::Zero();        // [m], eye: mark where it comes out
   double within = 0.0;            // [m], present; eye: of both marks, seen from above
   double seconds = 0.0;           // [s], load, present and tie: kept so long
-  int passes = 0;                 // pass, draw, tie: ways through the tissue
+  int passes = 0;                 // pass, draw, tie, cut: ways through the tissue
   int throws = 0;                 // tie: at least
+  std::string knot;               // tie: its class, empty: any
   double loop = 0.0;              // [m], tie: thread in bites and knot at most
   double tail = 0.0;              // [m], draw: thread left before the first entry
 };

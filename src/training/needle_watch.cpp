@@ -19,6 +19,28 @@ int passes_done(const TissueObservation& t) {
   }));
 }
 
+/// The thread through the first so many ways is cut on either side of each.
+bool cut_off(const Observation& o, int passes) {
+  if (o.tissue.n_passes < passes) return false;
+  for (int i = 0; i < passes; ++i) {
+    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
+    const ThreadPart piece = piece_at(o, arc);
+    if (arc < 0.0 || piece.first == 0 || piece.last == o.n_nodes - 1) return false;
+  }
+  return true;
+}
+
+/// [m], thread before the first way of the piece that hangs on the needle; NaN while the needle is in it.
+double thread_left(const Observation& o) {
+  const double start = o.arc[static_cast<std::size_t>(piece_at(o, o.arc[static_cast<std::size_t>(o.n_nodes - 1)]).first)];
+  for (int i = 0; i < o.tissue.n_passes; ++i) {
+    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
+    if (arc < 0.0) return kNaN;
+    if (arc >= start) return arc - start;
+  }
+  return kNaN;
+}
+
 }  // namespace
 
 NeedleGoal parse_needle_goal(const YamlNode& node) {
@@ -43,10 +65,12 @@ NeedleGoal parse_needle_goal(const YamlNode& node) {
     g.within = node.quantity("within", "mm", Range::positive());
   } else if (kind == "cut") {
     g.kind = NeedleGoal::Kind::cut;
+    g.passes = node.integer_or("passes", 2, 1, kMaxPasses);
   } else if (kind == "tie") {
     g.kind = NeedleGoal::Kind::tie;
     g.passes = node.integer("passes", 1, kMaxPasses);
     g.throws = node.integer("throws", 1, 10);
+    if (node.has("knot")) g.knot = node.choice("knot", {"overhand", "square", "surgeons", "granny", "triple"});
     g.loop = node.quantity("loop", "mm", Range::positive());
     g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
   } else if (kind == "pass" || kind == "draw") {
@@ -128,10 +152,11 @@ bool NeedleWatch::tied(const NeedleGoal& g, const Observation& o) {
   next_knot_ = o.time + kEvery;
   tied_ = false;
   if (passes_done(o.tissue) < g.passes) return false;
-  const StitchKnot k = knot_in_tissue(o, 1);
-  if (!(k.knot.n_throws >= g.throws && k.loop() <= g.loop)) return false;
   int held = 0;
-  for (int i = 0; i < o.tissue.n_passes; ++i) held += k.holds(o.tissue.passes[static_cast<std::size_t>(i)].arc) ? 1 : 0;
+  for (const StitchKnot& k : knots_in_tissue(o, 1)) {
+    if (!(k.knot.n_throws >= g.throws && k.loop() <= g.loop) || (!g.knot.empty() && k.knot.knot_class != g.knot)) continue;
+    for (int i = 0; i < o.tissue.n_passes; ++i) held += k.holds(o.tissue.passes[static_cast<std::size_t>(i)].arc) ? 1 : 0;
+  }
   return tied_ = held >= g.passes;
 }
 
@@ -162,16 +187,13 @@ bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {
       return through_eye(g, o.tissue);
     case NeedleGoal::Kind::pass:
       return passes_done(o.tissue) >= g.passes;
-    case NeedleGoal::Kind::draw: {
-      if (passes_done(o.tissue) < g.passes) return false;
-      const double tail = o.tissue.passes[0].arc;
-      return tail >= 0.0 && tail <= g.tail;
-    }
+    case NeedleGoal::Kind::draw:
+      return passes_done(o.tissue) >= g.passes && thread_left(o) <= g.tail;
     case NeedleGoal::Kind::tie:
       now = tied(g, o);
       break;
     case NeedleGoal::Kind::cut:
-      return o.cut_edge_low >= 0 && o.cut_edge_high >= 0;
+      return cut_off(o, g.passes);
   }
   kept_ = now ? kept_ + dt : 0.0;
   return now && kept_ >= g.seconds;
@@ -211,7 +233,7 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
   if (!r.has_tissue) return r;
   r.thickness = scene_.tissue.thickness;
   r.stitches = stitches_of(tissue_, pass_time_, scene_.tissue);
-  if (last != nullptr && !r.stitches.empty()) name_knots(knot_in_tissue(*last), tissue_, r.stitches);
+  if (last != nullptr && !r.stitches.empty()) for (const StitchKnot& k : knots_in_tissue(*last)) name_knots(k, tissue_, r.stitches);
   r.lapses = lapses_of(task_.lapses, r.stitches, r.thickness);
   find_back_walls(task_.lapses, tissue_, pass_time_, scene_.tissue, r.stitches, r.lapses);
   r.join = join;

@@ -4,11 +4,11 @@
 //   load     that tool alone holds it, at the place and angle asked for, for `seconds`
 //   present  the needle's point stays within reach of a place for `seconds`
 //   pass     the needle has gone right through the tissue so many times
-//   draw     the thread follows until no more than `tail` is left before the first entry
+//   draw     the thread follows until no more than `tail` is left before the first entry (of the thread that hangs on the needle now)
 //   eye      the needle has gone into the card at one mark and come out of it at another, on one way after the eyes before it
-//   tie      a knot of so many throws holds those ways, drawn down until no more thread is in its loop than `loop`, for `seconds`; looked at
-//            every quarter of a second
-//   cut      both ends of the thread are cut
+//   tie      a knot of so many throws holds those ways, drawn down until no more thread is in its loop than `loop`, for `seconds`, and of the
+//            class `knot` if one is asked for; looked at every quarter of a second
+//   cut      the thread is cut on either side of the first so many ways
 // Events: goal-done. Test: needle_watch_test.
 
 #include <limits>

@@ -2,32 +2,43 @@
 
 #include <algorithm>
 
-#include "training/thread_part.h"
-
 namespace filum {
 namespace {
 
-double cut_tail(const Observation& o, const ThreadPart& part, const KnotReport& knot) {
-  const double low = length_between(o, part.first, part.first + knot.core_begin);
-  const double high = length_between(o, part.first + knot.core_end, part.last);
-  if (o.cut_edge_high < 0) return low;
-  return o.cut_edge_low < 0 ? high : std::max(low, high);
+double cut_tail(const Observation& o, const ThreadPart& piece, const KnotReport& knot) {
+  const double low = length_between(o, piece.first, piece.first + knot.core_begin);
+  const double high = length_between(o, piece.first + knot.core_end, piece.last);
+  if (piece.last == o.n_nodes - 1) return low;
+  return piece.first == 0 ? high : std::max(low, high);
 }
 
 }  // namespace
 
-StitchKnot knot_in_tissue(const Observation& o, int closures) {
+StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int closures) {
   StitchKnot k;
-  const ThreadPart part = tied_part(o);
-  if (part.nodes() < 4) return k;
+  if (piece.nodes() < 4) return k;
   KnotOptions options;
   options.closures = closures;
-  k.knot = classify_knot(o.positions.middleCols(part.first, part.nodes()), o.radius, nullptr, options);
+  k.knot = classify_knot(o.positions.middleCols(piece.first, piece.nodes()), o.radius, nullptr, options);
   if (k.knot.core_begin < 0) return k;
-  k.begin = o.arc[static_cast<std::size_t>(part.first + k.knot.core_begin)];
-  k.end = o.arc[static_cast<std::size_t>(part.first + k.knot.core_end)];
-  k.tail = cut_tail(o, part, k.knot);
+  k.begin = o.arc[static_cast<std::size_t>(piece.first + k.knot.core_begin)];
+  k.end = o.arc[static_cast<std::size_t>(piece.first + k.knot.core_end)];
+  k.tail = cut_tail(o, piece, k.knot);
   return k;
+}
+
+std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures) {
+  std::vector<StitchKnot> knots;
+  std::vector<int> seen;  // first nodes of the pieces
+  for (int i = 0; i < o.tissue.n_passes; ++i) {
+    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
+    if (arc < 0.0) continue;
+    const ThreadPart piece = piece_at(o, arc);
+    if (std::find(seen.begin(), seen.end(), piece.first) != seen.end()) continue;
+    seen.push_back(piece.first);
+    knots.push_back(knot_in_piece(o, piece, closures));
+  }
+  return knots;
 }
 
 void name_knots(const StitchKnot& knot, const TissueObservation& tissue, std::vector<Stitch>& stitches) {

@@ -4,13 +4,15 @@
 // (knot_classifier.h) reaches over both. A knot in a thread beside the stitch ties nothing.
 //   loop  length of that part: thread in bites and knot together; falls to its least when the knot is drawn down on the wall
 //   tail  the longer of the ends that were cut, or the short end if none was
-// Neglects: two knots in one thread (their sum is named, and the stitches within it all have it). Test: stitch_knot_test.
+// Each whole piece of the thread is looked at by itself. Neglects: two knots in one piece (their sum is named, and the stitches within it all
+// have it). Test: stitch_knot_test.
 
 #include <limits>
 #include <vector>
 
 #include "training/knot_classifier.h"
 #include "training/lapse.h"
+#include "training/thread_part.h"
 #include "world/observation.h"
 
 namespace filum {
@@ -25,7 +27,10 @@ struct StitchKnot {
 };
 
 /// `closures`: as in KnotOptions. Takes milliseconds.
-StitchKnot knot_in_tissue(const Observation& o, int closures = 5);
+StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int closures = 5);
+
+/// Of each piece that goes through tissue.
+std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures = 5);
 
 /// Tells each stitch the knot that it is tied with.
 void name_knots(const StitchKnot& knot, const TissueObservation& tissue, std::vector<Stitch>& stitches);

@@ -1,6 +1,6 @@
 #pragma once
 // The part of the thread that can hold the knot: without what was cut off and, if the thread has parted, its
-// longer piece.
+// longer piece. In tissue every stitch may lie in a piece of its own: the thread is cut as often as it is tied.
 
 #include "world/observation.h"
 
@@ -25,6 +25,21 @@ inline ThreadPart tied_part(const Observation& o) {
     }
   }
   return part;
+}
+
+/// The whole piece about the thread's place `arc` [m] from its first end.
+inline ThreadPart piece_at(const Observation& o, double arc) {
+  ThreadPart piece{0, o.n_nodes - 1};
+  for (int k = 0; k < o.n_parted; ++k) {
+    const int edge = o.parted[static_cast<std::size_t>(k)];
+    if (o.arc[static_cast<std::size_t>(edge)] < arc) {
+      piece.first = edge + 1;
+    } else {
+      piece.last = edge;
+      break;
+    }
+  }
+  return piece;
 }
 
 /// Length of the thread between two nodes, along the centreline. [m]

@@ -42,6 +42,8 @@ struct PelletObservation {
 };
 inline constexpr int kMaxPellets = 8;
 
+inline constexpr int kMaxParted = 24;
+
 struct Observation {
   std::uint64_t step = 0;
   double time = 0.0;              // [s], scene time
@@ -55,6 +57,8 @@ struct Observation {
   int break_edge = -1;            // edge that parted, -1 none (nodes up to it and after it are two strands)
   int cut_edge_low = -1;          // cuts made with scissors: edge index near the short end, -1 none
   int cut_edge_high = -1;         // and near the long end
+  int n_parted = 0;               // edges that hold nothing any more, cut or broken, from the short end on: pieces of thread lie between them
+  std::array<int, kMaxParted> parted{};  // of more than these the last ones are not told
   int n_tools = 0;
   std::array<ToolObservation, 3> tools;
   int n_pellets = 0;

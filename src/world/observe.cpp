@@ -27,6 +27,12 @@ void observe_thread(const Model& model, const State& s, const ImplicitRod& rod, 
   o.min_gap = rod.contact().smallest_distance(t.x) - 2.0 * model.thread.radius;
 }
 
+void observe_parted(const RodState& t, Observation& o) noexcept {
+  o.n_parted = 0;
+  for (int j = 0; j + 1 < t.n && o.n_parted < kMaxParted; ++j)
+    if (t.alive[j] == 0) o.parted[static_cast<std::size_t>(o.n_parted++)] = j;
+}
+
 int edge_at(const RodState& t, double arc) noexcept { return arc < 0.0 ? -1 : locate_arc(t, arc).first; }
 
 void observe_tools(const State& s, Observation& o) noexcept {
@@ -69,6 +75,7 @@ void fill_observation(const Model& model, const State& s, const ImplicitRod& rod
   o.step = s.step;
   o.time = static_cast<double>(s.step) * model.step.dt;
   observe_thread(model, s, rod, o);
+  observe_parted(s.thread, o);
   observe_tools(s, o);
   observe_pellets(s, o);
   o.broken = s.break_arc >= 0.0;

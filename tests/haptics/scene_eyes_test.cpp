@@ -49,6 +49,16 @@ TEST(SceneEyes, TheFreeEndIsTheOneThatIsLeftAfterACut) {
   EXPECT_NEAR((s.seen.p - Vec3(2e-3, 0, 0)).norm(), 0.0, 1e-15);
 }
 
+TEST(SceneEyes, OfAThreadCutInPiecesTheOneOnTheNeedleIsMeant) {
+  Scene s;
+  s.o.needle.present = true;
+  s.o.n_parted = 2;
+  s.o.parted = {0, 2};
+  s.o.cut_edge_low = 0;
+  ASSERT_TRUE(s.eyes.find({.kind = Look::Kind::thread, .length = 0.0, .from_end = true}, s.seen));
+  EXPECT_NEAR((s.seen.p - Vec3(3e-3, 0, 0)).norm(), 0.0, 1e-15);
+}
+
 TEST(SceneEyes, APullIsFeltByItsOwnToolOnly) {
   Scene s;
   s.o.tools[1].f_T_W = Vec3(3e-3, 0, -4e-3);

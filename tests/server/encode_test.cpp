@@ -23,7 +23,9 @@ Observation observation_of(int nodes, int capacity) {
   o.time = 0.082;
   o.tools[1].X_WT.p = Vec3(0.01, 0.02, 0.03);
   o.tools[1].grasped_edge = 7;
-  o.cut_edge_high = 3;
+  o.n_parted = 3;
+  o.parted = {1, 2, 3};
+  o.break_edge = 2;
   return o;
 }
 
@@ -43,7 +45,7 @@ TEST(Encode, FrameHoldsTheNodesInUse) {
   EXPECT_EQ(frame.at("tools")[1].at("pose").at("position"), json({0.01, 0.02, 0.03}));
   EXPECT_EQ(frame.at("tools")[1].at("pose").at("quaternion"), json({1, 0, 0, 0}));
   EXPECT_EQ(frame.at("tools")[1].at("grasped"), 7);
-  EXPECT_EQ(frame.at("cuts"), json({3}));
+  EXPECT_EQ(frame.at("cuts"), json({1, 3})) << "the edge that broke is told by itself";
   EXPECT_EQ(frame.at("task").at("warnings")[0].at("text"), "too tight \"now\"");
   EXPECT_EQ(frame.at("devices")[0].at("rejected"), 1);
 }

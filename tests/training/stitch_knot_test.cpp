@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 #include "training/needle_watch.h"
@@ -37,6 +38,14 @@ Observation trefoil(double r, double tail, double rest, bool knotted = true) {
   return o;
 }
 
+StitchKnot knot_in(const Observation& o) { return knot_in_piece(o, piece_at(o, 0.5 * o.arc.back())); }
+
+/// The same with these edges cut.
+Observation cut_at(Observation o, std::initializer_list<int> edges) {
+  for (const int edge : edges) o.parted[static_cast<std::size_t>(o.n_parted++)] = edge;
+  return o;
+}
+
 /// One stitch of two ways at these places of the thread [m].
 std::vector<Stitch> stitch_at(TissueObservation& tissue, double a, double b) {
   tissue.n_passes = 2;
@@ -50,7 +59,7 @@ std::vector<Stitch> stitch_at(TissueObservation& tissue, double a, double b) {
 
 TEST(StitchKnot, AThrowThatReachesOverBothBitesTiesTheStitch) {
   const Observation o = trefoil(1e-3, 5e-3, 8e-3);
-  const StitchKnot k = knot_in_tissue(o);
+  const StitchKnot k = knot_in(o);
   EXPECT_EQ(k.knot.knot_class, "overhand");
   EXPECT_EQ(k.knot.n_throws, 1);
   const double middle = 0.5 * (k.begin + k.end);
@@ -67,26 +76,25 @@ TEST(StitchKnot, AKnotBesideTheStitchTiesNothing) {
   const Observation o = trefoil(1e-3, 5e-3, 8e-3);
   TissueObservation tissue;
   auto stitches = stitch_at(tissue, 1e-3, 2e-3);  // in the short end, before the knot
-  name_knots(knot_in_tissue(o), tissue, stitches);
+  name_knots(knot_in(o), tissue, stitches);
   EXPECT_TRUE(stitches[0].knot.empty());
   EXPECT_EQ(stitches[0].throws, 0);
   EXPECT_TRUE(std::isnan(stitches[0].tail));
 }
 
 TEST(StitchKnot, AThreadThatIsOnlyDrawnThroughIsNotTied) {
-  const StitchKnot k = knot_in_tissue(trefoil(1e-3, 5e-3, 8e-3, false));
+  const StitchKnot k = knot_in(trefoil(1e-3, 5e-3, 8e-3, false));
   EXPECT_EQ(k.knot.knot_class, "unknot");
   EXPECT_FALSE(k.holds(5e-3));
 }
 
 TEST(StitchKnot, TheLoopShrinksWithTheKnotAndTheTailIsWhatTheCutLeft) {
-  const StitchKnot wide = knot_in_tissue(trefoil(1e-3, 5e-3, 8e-3)), narrow = knot_in_tissue(trefoil(0.5e-3, 5e-3, 8e-3));
+  const StitchKnot wide = knot_in(trefoil(1e-3, 5e-3, 8e-3)), narrow = knot_in(trefoil(0.5e-3, 5e-3, 8e-3));
   EXPECT_NEAR(narrow.loop(), 0.5 * wide.loop(), 0.1 * wide.loop());
-  Observation cut = trefoil(1e-3, 5e-3, 8e-3);
-  cut.cut_edge_low = 9;  // half of the short end is gone
-  const StitchKnot k = knot_in_tissue(cut);
+  const Observation cut = cut_at(trefoil(1e-3, 5e-3, 8e-3), {9});  // half of the short end is gone
+  const StitchKnot k = knot_in(cut);
   EXPECT_NEAR(k.tail, k.begin - cut.arc[10], 1e-9) << "the long end is still whole";
-  EXPECT_LT(k.tail, 0.75 * knot_in_tissue(trefoil(1e-3, 5e-3, 8e-3)).tail);
+  EXPECT_LT(k.tail, 0.75 * knot_in(trefoil(1e-3, 5e-3, 8e-3)).tail);
 }
 
 TEST(StitchKnot, TyingIsDoneWhenTheKnotHoldsTheBitesAndIsDrawnDown) {
@@ -94,16 +102,17 @@ TEST(StitchKnot, TyingIsDoneWhenTheKnotHoldsTheBitesAndIsDrawnDown) {
   tie.kind = NeedleGoal::Kind::tie;
   tie.passes = 2;
   tie.throws = 1;
-  tie.loop = 0.75 * knot_in_tissue(trefoil(1e-3, 5e-3, 8e-3)).loop();
+  tie.loop = 0.75 * knot_in(trefoil(1e-3, 5e-3, 8e-3)).loop();
   tie.seconds = 0.3;
   cut.kind = NeedleGoal::Kind::cut;
+  cut.passes = 2;
   NeedleTask task;
   task.goals = {tie, cut};
   task.has_tissue = true;
   NeedleWatch watch(task, {});
   std::vector<TaskEvent> events;
   const auto look = [&](Observation o, double from, bool beside = false) {
-    const StitchKnot k = knot_in_tissue(o);
+    const StitchKnot k = knot_in(o);
     o.tissue.n_passes = 2;
     for (std::size_t i = 0; i < 2; ++i) {
       o.tissue.passes[i].out = true;
@@ -121,15 +130,61 @@ TEST(StitchKnot, TyingIsDoneWhenTheKnotHoldsTheBitesAndIsDrawnDown) {
   EXPECT_EQ(watch.step(), 0) << "no knot";
   look(trefoil(0.5e-3, 5e-3, 8e-3), 2.0, true);
   EXPECT_EQ(watch.step(), 0) << "beside the stitch";
+  task.goals[0].knot = "square";
+  NeedleWatch particular(task, {});
+  std::swap(watch, particular);
+  look(trefoil(0.5e-3, 5e-3, 8e-3), 3.0);
+  EXPECT_EQ(watch.step(), 0) << "another knot was asked for";
+  std::swap(watch, particular);
   look(trefoil(0.5e-3, 5e-3, 8e-3), 3.0);
   EXPECT_EQ(watch.step(), 1);
   Observation o = trefoil(0.5e-3, 5e-3, 8e-3);
-  o.cut_edge_low = 3;
-  watch.observe(o, 0.1, true, events);
+  const double between = 0.5 * o.arc.back();
+  o.tissue.n_passes = 2;
+  o.tissue.passes[0].arc = between - 1e-4;
+  o.tissue.passes[1].arc = between + 1e-4;
+  watch.observe(cut_at(o, {3}), 0.1, true, events);
   EXPECT_EQ(watch.step(), 1) << "one end is still whole";
-  o.cut_edge_high = 150;
-  watch.observe(o, 0.1, true, events);
+  watch.observe(cut_at(o, {3, 8}), 0.1, true, events);
+  EXPECT_EQ(watch.step(), 1) << "it was cut twice on the same side";
+  watch.observe(cut_at(o, {3, 150}), 0.1, true, events);
   EXPECT_TRUE(watch.done());
+}
+
+/// Both one after the other in one thread.
+Observation in_a_row(const Observation& a, const Observation& b) {
+  Observation o = a;
+  o.n_nodes = a.n_nodes + b.n_nodes;
+  o.positions = Points::Zero(3, o.n_nodes);
+  o.positions.leftCols(a.n_nodes) = a.positions;
+  o.positions.rightCols(b.n_nodes) = b.positions.colwise() + Vec3(0, 0.1, 0);
+  const double join = a.arc.back() + 1e-3;
+  for (const double arc : b.arc) o.arc.push_back(join + arc);
+  return o;
+}
+
+TEST(StitchKnot, EveryPieceOfTheThreadHasItsOwnKnot) {
+  const Observation knotted = trefoil(1e-3, 5e-3, 8e-3), plain = trefoil(1e-3, 5e-3, 8e-3, false);
+  Observation o = in_a_row(in_a_row(knotted, plain), knotted);
+  const int n = knotted.n_nodes;
+  o = cut_at(o, {n - 1, 2 * n - 1});
+  o.tissue.n_passes = 6;
+  for (std::size_t i = 0; i < 6; ++i)
+    o.tissue.passes[i].arc = o.arc[(i / 2) * static_cast<std::size_t>(n)] + 0.5 * knotted.arc.back() + (i % 2 == 0 ? -1e-4 : 1e-4);
+  const std::vector<StitchKnot> knots = knots_in_tissue(o);
+  ASSERT_EQ(knots.size(), 3u);
+  std::vector<Stitch> stitches(3);
+  for (int i = 0; i < 3; ++i) {
+    stitches[static_cast<std::size_t>(i)].first = 2 * i;
+    stitches[static_cast<std::size_t>(i)].second = 2 * i + 1;
+  }
+  for (const StitchKnot& k : knots) name_knots(k, o.tissue, stitches);
+  EXPECT_EQ(stitches[0].knot, "overhand");
+  EXPECT_EQ(stitches[1].knot, "");
+  EXPECT_EQ(stitches[2].knot, "overhand");
+  EXPECT_NEAR(stitches[0].tail, length_between(o, 0, n - 1) - (knots[0].end - knots[0].begin) - knots[0].begin, 1e-3) << "of the first piece the long end was cut";
+  o.n_parted = 0;
+  EXPECT_EQ(knots_in_tissue(o).size(), 1u) << "one thread, one look";
 }
 
 }  // namespace

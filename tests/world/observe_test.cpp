@@ -50,6 +50,7 @@ TEST(Observe, CutsBreaksAndContacts) {
   v.s.break_arc = arc_of(4);
   v.s.cut_low = arc_of(2);
   v.s.cut_high = arc_of(9);
+  for (const int edge : {2, 4, 9}) v.s.thread.alive[edge] = 0;
   v.s.memory.self.push_back({2, 7, Vec3::Zero(), 0.03});
   v.s.memory.self.push_back({2, 8, Vec3::Zero(), 0.01});
   v.look();
@@ -57,6 +58,10 @@ TEST(Observe, CutsBreaksAndContacts) {
   EXPECT_EQ(v.o.break_edge, 4);
   EXPECT_EQ(v.o.cut_edge_low, 2);
   EXPECT_EQ(v.o.cut_edge_high, 9);
+  ASSERT_EQ(v.o.n_parted, 3);
+  EXPECT_EQ(v.o.parted[0], 2);
+  EXPECT_EQ(v.o.parted[1], 4);
+  EXPECT_EQ(v.o.parted[2], 9);
   EXPECT_EQ(v.o.n_contacts, 2);
   EXPECT_DOUBLE_EQ(v.o.contact[2], 0.04);
   EXPECT_DOUBLE_EQ(v.o.contact[7], 0.03);
