@@ -32,7 +32,7 @@ bool cut_off(const Observation& o, int passes) {
 
 /// [m], thread before the first way of the piece that hangs on the needle; NaN while the needle is in it.
 double thread_left(const Observation& o) {
-  const double start = o.arc[static_cast<std::size_t>(piece_at(o, o.arc[static_cast<std::size_t>(o.n_nodes - 1)]).first)];
+  const double start = o.n_parted == 0 ? 0.0 : o.arc[static_cast<std::size_t>(o.parted[static_cast<std::size_t>(o.n_parted - 1)] + 1)];
   for (int i = 0; i < o.tissue.n_passes; ++i) {
     const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
     if (arc < 0.0) return kNaN;
