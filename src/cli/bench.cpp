@@ -76,8 +76,9 @@ std::vector<std::string> possible_benches(const std::string& root) {
 
 nlohmann::ordered_json json_of(const BenchResult& r) {
   using Json = nlohmann::ordered_json;
-  Json stages = Json::object();
+  Json stages = Json::object(), slow = Json::object();
   for (const auto& [name, ms] : r.stages) stages[name] = ms;
+  for (const auto& [name, ms] : r.slow_stages) slow[name] = ms;
   return {{"name", r.name},
           {"nodes", r.nodes},
           {"contacts", r.contacts},
@@ -87,7 +88,9 @@ nlohmann::ordered_json json_of(const BenchResult& r) {
           {"p99_ms", r.p99_ms},
           {"max_ms", r.max_ms},
           {"real_time_factor", r.real_time_factor},
+          {"processor", {{"p50_ms", r.processor_p50_ms}, {"p99_ms", r.processor_p99_ms}, {"mean_ms", r.processor_mean_ms}}},
           {"stages", stages},
+          {"stages_of_slowest_hundredth", slow},
           {"reference", {{"name", r.reference_name}, {"p50_ms", r.reference_p50_ms}}}};
 }
 
@@ -95,7 +98,10 @@ void print_line(const BenchResult& r) {
   std::printf("%-18s %5d %8d %6.2f %6d %8.3f %8.3f %8.3f %9.2f %12.3f %8.2f\n", r.name.c_str(), r.nodes,
               r.contacts, r.dt_ms, r.steps, r.p50_ms, r.p99_ms, r.max_ms, r.real_time_factor,
               r.reference_p50_ms, r.p50_ms / r.reference_p50_ms);
+  if (r.processor_mean_ms > 0.0)
+    std::printf("    processor time: p50 %.3f, p99 %.3f, mean %.3f ms\n", r.processor_p50_ms, r.processor_p99_ms, r.processor_mean_ms);
   for (const auto& [name, ms] : r.stages) std::printf("    %-40s %9.4f\n", name.c_str(), ms);
+  for (const auto& [name, ms] : r.slow_stages) std::printf("    in the slowest hundredth: %-24s %9.4f\n", name.c_str(), ms);
   std::fflush(stdout);
 }
 

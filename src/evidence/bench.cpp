@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <fstream>
 #include <numbers>
 #include <thread>
@@ -23,6 +24,13 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+/// [ms] of this thread on a processor: what others on the machine take is not in it.
+double processor_ms() {
+  std::timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
 double percentile(std::vector<double> values, double fraction) {
@@ -75,6 +83,18 @@ class StageTimes {
     for (std::size_t k = 0; k < ms_.size(); ++k) list.emplace_back(names_[k], percentile(ms_[k], 0.5));
     return list;
   }
+  /// Mean of the steps whose `ms` is at least `least`.
+  std::vector<std::pair<std::string, double>> mean(const std::vector<double>& ms, double least) const {
+    std::vector<std::pair<std::string, double>> list;
+    for (std::size_t k = 0; k < ms_.size(); ++k) {
+      double sum = 0.0;
+      int count = 0;
+      for (std::size_t i = 0; i < std::min(ms.size(), ms_[k].size()); ++i)
+        if (ms[i] >= least) sum += ms_[k][i], ++count;
+      list.emplace_back(names_[k], sum / std::max(1, count));
+    }
+    return list;
+  }
 
  private:
   std::size_t steps_, noted_ = 0;
@@ -89,15 +109,18 @@ template <class Step, class Look>
 void time_steps(BenchResult& r, Step step, Look look) {
   constexpr int kReferenceEvery = 40;
   Reference reference;
-  std::vector<double> ms;
+  std::vector<double> ms, processor;
   ms.reserve(static_cast<std::size_t>(r.steps));
+  processor.reserve(static_cast<std::size_t>(r.steps));
   StageTimes stages(static_cast<std::size_t>(r.steps));
   double total = 0.0;
   for (bool more = true; more && static_cast<int>(ms.size()) < r.steps;) {
     if (ms.size() % kReferenceEvery == 0) reference.run();
+    const double processor_begin = processor_ms();
     const auto begin = Clock::now();
     step();
     ms.push_back(milliseconds_since(begin));
+    processor.push_back(processor_ms() - processor_begin);
     total += ms.back();
     stages.note();
     more = look();
@@ -107,7 +130,11 @@ void time_steps(BenchResult& r, Step step, Look look) {
   r.p99_ms = percentile(ms, 0.99);
   r.max_ms = percentile(ms, 1.0);
   r.real_time_factor = r.dt_ms * r.steps / total;
+  r.processor_p50_ms = percentile(processor, 0.5);
+  r.processor_p99_ms = percentile(processor, 0.99);
+  for (const double t : processor) r.processor_mean_ms += t / static_cast<double>(processor.size());
   r.stages = stages.p50();
+  r.slow_stages = stages.mean(processor, r.processor_p99_ms);
   r.reference_name = Reference::kName;
   r.reference_p50_ms = reference.p50();
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/ensure.h"
+#include "base/stage_clock.h"
 #include "physics/vessel_wall_pressure.h"
 
 namespace filum {
@@ -227,6 +228,7 @@ void VesselWall::guess(const WallState& state) noexcept {
 
 // The potential is that of everything but pressure, whose work is reckoned along the way that advance() takes.
 double VesselWall::evaluate(const WallState& state) noexcept {
+  const StageScope stage("wall: forces");
   Points& r = trial_residual_;
   const Points& x = trial_x_;
   double energy = 0.0;
@@ -256,6 +258,7 @@ double VesselWall::evaluate(const WallState& state) noexcept {
 }
 
 void VesselWall::gather_springs() noexcept {
+  const StageScope stage("wall: springs");
   springs_.clear();
   for (int k = 0; k < n_loads_; ++k) {
     Load& l = loads_[static_cast<std::size_t>(k)];
@@ -272,6 +275,7 @@ bool VesselWall::springs_stale() const noexcept {
 
 /// d = Q (P + springs)^-1 Q^T r.
 void VesselWall::precondition(const Vector& r, Vector& d) noexcept {
+  const StageScope stage("wall: first matrix");
   const int n = mesh_.n_nodes();
   for (int i = 0; i < n; ++i) turned_f_.segment<3>(3 * i) = (turn_[static_cast<std::size_t>(i)].transpose() * r.segment<3>(3 * i)).cast<float>();
   factor_.solve(turned_f_);
@@ -282,6 +286,7 @@ void VesselWall::precondition(const Vector& r, Vector& d) noexcept {
 
 /// What the pairs of earlier steps say with the springs of this one.
 void VesselWall::recall(const WallHistory& h) noexcept {
+  const StageScope stage("wall: recall");
   inverse_.fill(0.0);
   for (int k = 0; k < h.n; ++k) {
     const int p = (h.newest - k + options_.memory) % options_.memory;
@@ -305,6 +310,7 @@ void VesselWall::recall(const WallHistory& h) noexcept {
 
 /// Two-loop recursion (Nocedal & Wright, Numerical Optimization, 2006, algorithm 7.4).
 void VesselWall::direction(const WallHistory& h) noexcept {
+  const StageScope stage("wall: direction");
   std::array<double, 64> alpha{};
   work_ = flat(residual_);
   for (int k = 0; k < h.n; ++k) {
