@@ -19,13 +19,15 @@ constexpr double kBetter = 0.8;     // a residual that falls to this share is we
 constexpr int kShortenings = 8;
 constexpr double kQuiet = 0.1;       // of the tolerance: below this a step needs no iteration at all
 constexpr double kLonger = 4.0;      // than the step taken last: more is not tried at first
+constexpr double kFirm = 3.0;        // times the matrix at rest: with 1 the steps of a wall at work overshoot, most of them to a third (DECISIONS)
 constexpr double kBedding = 0.006;   // of the mean diagonal of the elements' matrix
 constexpr double kStick = 0.5;           // of a push's stiffness: its friction before it slips
 constexpr double kDeepPush = 20e-6;      // [m], overlap of a push beyond which friction does not grow
 constexpr double kMeetingReach = 0.5;   // of the wall's thickness
 constexpr double kMeetingShare = 0.1;   // stiffness of a node against a face, of lambda times thickness: a cube of the wall a tenth as wide as high
 constexpr double kLeastStretch = 0.3, kMostStretch = 16.0;  // [-], det F and |F|^2 of a node beyond which the first matrix is only turned
-constexpr double kViolent = 0.1;     // [N], unbalanced force of a node at the first guess that is too far off to be trusted
+constexpr int kMostPairs = 64;
+constexpr double kViolent = 10.0;    // times the tolerance: unbalanced force of a node at the first guess that is too far off to be trusted
 
 using Vector = Eigen::VectorXd;
 Eigen::Map<const Vector> flat(const Points& p) noexcept { return {p.data(), p.size()}; }
@@ -77,12 +79,12 @@ std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallEl
       for (int b = 0; b < 8; ++b) {
         const int i = nodes[static_cast<std::size_t>(a)], j = nodes[static_cast<std::size_t>(b)];
         if (i < j || held[static_cast<std::size_t>(i)] || held[static_cast<std::size_t>(j)]) continue;
-        blocks.push_back({i, j, K.block<3, 3>(3 * a, 3 * b)});
+        blocks.push_back({i, j, kFirm * K.block<3, 3>(3 * a, 3 * b)});
         if (i == j) diagonal += K.block<3, 3>(3 * a, 3 * b).trace() / (3.0 * mesh.n_nodes());
       }
   }
   for (int i = 0; i < mesh.n_nodes(); ++i)
-    blocks.push_back({i, i, (held[static_cast<std::size_t>(i)] ? 1.0 : inertia[i] + kBedding * diagonal) * Mat3::Identity()});
+    blocks.push_back({i, i, (held[static_cast<std::size_t>(i)] ? 1.0 : kFirm * (inertia[i] + kBedding * diagonal)) * Mat3::Identity()});
   return blocks;
 }
 
@@ -112,10 +114,10 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   loads_.resize(kMostLoads);
   for (Points* p : {&x_, &target_, &residual_, &elastic_, &trial_elastic_, &trial_x_, &trial_residual_, &push_, &trial_push_}) p->setZero(3, n);
   turn_.resize(static_cast<std::size_t>(n));
-  direction_ = work_ = Vector::Zero(3 * n);
-  turned_f_ = Eigen::VectorXf::Zero(3 * n);
-  options_.memory = std::clamp(options_.memory, 1, static_cast<int>(inverse_.size()));
-  answer_.setZero(3 * n, options_.memory);
+  direction_ = Vector::Zero(3 * n);
+  turned_ = steer_ = Eigen::VectorXf::Zero(3 * n);
+  options_.memory = std::clamp(options_.memory, 1, kMostPairs);
+  pairs_ = WallPairs(3 * n, options_.memory);
   found_.reserve(256);
 }
 
@@ -244,8 +246,8 @@ double VesselWall::evaluate(const WallState& state) noexcept {
     add_pressure_forces(mesh_, pressure_, x, trial_push_);
     trial_elastic_ += trial_push_;
   }
+  energy += meetings_.add_forces(x, trial_elastic_);
   r += trial_elastic_;
-  energy += meetings_.add_forces(x, r);
   for (int k = 0; k < n_loads_; ++k) {
     Load& l = loads_[static_cast<std::size_t>(k)];
     Vec3 at = -l.at;
@@ -273,59 +275,57 @@ bool VesselWall::springs_stale() const noexcept {
   return std::any_of(loads_.begin(), loads_.begin() + n_loads_, [](const Load& l) { return l.one_sided ? l.in_matrix != l.stiff() : l.stuck_in_matrix != l.sticks; });
 }
 
-/// d = Q (P + springs)^-1 Q^T r.
-void VesselWall::precondition(const Vector& r, Vector& d) noexcept {
+/// b becomes Q (P + springs)^-1 Q^T b.
+void VesselWall::precondition(Eigen::VectorXf& b) noexcept {
   const StageScope stage("wall: first matrix");
   const int n = mesh_.n_nodes();
-  for (int i = 0; i < n; ++i) turned_f_.segment<3>(3 * i) = (turn_[static_cast<std::size_t>(i)].transpose() * r.segment<3>(3 * i)).cast<float>();
-  factor_.solve(turned_f_);
-  springs_.correct(turned_f_);
-  for (int i = 0; i < n; ++i) d.segment<3>(3 * i) = turn_[static_cast<std::size_t>(i)] * turned_f_.segment<3>(3 * i).cast<double>();
-  for (const int i : mesh_.held) d.segment<3>(3 * i).setZero();
+  for (const int i : mesh_.held) b.segment<3>(3 * i).setZero();
+  for (int i = 0; i < n; ++i) turned_.segment<3>(3 * i) = turn_[static_cast<std::size_t>(i)].transpose().cast<float>() * b.segment<3>(3 * i);
+  factor_.solve(turned_);
+  springs_.correct(turned_);
+  for (int i = 0; i < n; ++i) b.segment<3>(3 * i) = turn_[static_cast<std::size_t>(i)].cast<float>() * turned_.segment<3>(3 * i);
+  for (const int i : mesh_.held) b.segment<3>(3 * i).setZero();
+}
+
+/// Stiffness of a load as the pairs and the first matrix should know it. [N/m]
+Mat3 VesselWall::Load::felt() const noexcept { return one_sided && pushed <= 0.0 ? Mat3(Mat3::Zero()) : present(); }
+
+/// The answer of a pair without springs.
+void VesselWall::answer_alone(const WallHistory& h, int p) noexcept {
+  const auto s = h.s.col(p);
+  auto y = pairs_.answer(p);
+  y = h.y.col(p);
+  for (int i = 0; i < inertia_.size(); ++i) y.segment<3>(3 * i) += static_cast<float>(inertia_[i]) * s.segment<3>(3 * i);
 }
 
 /// What the pairs of earlier steps say with the springs of this one.
 void VesselWall::recall(const WallHistory& h) noexcept {
   const StageScope stage("wall: recall");
-  inverse_.fill(0.0);
-  for (int k = 0; k < h.n; ++k) {
-    const int p = (h.newest - k + options_.memory) % options_.memory;
-    const auto s = h.s.col(p);
-    auto y = answer_.col(p);
-    y = h.y.col(p);
-    for (int i = 0; i < inertia_.size(); ++i) y.segment<3>(3 * i) += inertia_[i] * s.segment<3>(3 * i);
-    for (int n = 0; n < n_loads_; ++n) {
-      const Load& l = loads_[static_cast<std::size_t>(n)];
-      if (l.one_sided && l.pushed <= 0.0) continue;
-      Vec3 at = Vec3::Zero();
-      for (int a = 0; a < 8; ++a) at += l.weight[a] * s.segment<3>(3 * l.node[static_cast<std::size_t>(a)]);
-      const Vec3 f = l.present() * at;
-      for (int a = 0; a < 8; ++a) y.segment<3>(3 * l.node[static_cast<std::size_t>(a)]) += l.weight[a] * f;
-    }
-    for (const int i : mesh_.held) y.segment<3>(3 * i).setZero();
-    const double sy = s.dot(y);
-    if (sy > 1e-10 * s.norm() * y.norm()) inverse_[static_cast<std::size_t>(p)] = 1.0 / sy;
-  }
+  for (int k = 0; k < h.n; ++k) answer_alone(h, (h.newest - k + options_.memory) % options_.memory);
+  pairs_.note_all(h.s);
+  for (int n = 0; n < n_loads_; ++n) loads_[static_cast<std::size_t>(n)].counted.setZero();
+  count_springs(h);
 }
 
-/// Two-loop recursion (Nocedal & Wright, Numerical Optimization, 2006, algorithm 7.4).
+/// Brings the pairs up to date with what has come to touch the wall, or left it, since they were last asked.
+void VesselWall::count_springs(const WallHistory& h) noexcept {
+  for (int n = 0; n < n_loads_; ++n) {
+    Load& l = loads_[static_cast<std::size_t>(n)];
+    const Mat3 now = l.felt();
+    if (now == l.counted) continue;
+    pairs_.stiffen(h.s, l.node, l.weight, now - l.counted);
+    l.counted = now;
+  }
+  pairs_.count(h.n, h.newest);
+}
+
 void VesselWall::direction(const WallHistory& h) noexcept {
   const StageScope stage("wall: direction");
-  std::array<double, 64> alpha{};
-  work_ = flat(residual_);
-  for (int k = 0; k < h.n; ++k) {
-    const int p = (h.newest - k + options_.memory) % options_.memory;
-    const auto i = static_cast<std::size_t>(p);
-    if (inverse_[i] == 0.0) continue;
-    alpha[i] = inverse_[i] * h.s.col(p).dot(work_);
-    work_ -= alpha[i] * answer_.col(p);
-  }
-  precondition(work_, direction_);
-  for (int k = h.n; k-- > 0;) {
-    const int p = (h.newest - k + options_.memory) % options_.memory;
-    const auto i = static_cast<std::size_t>(p);
-    if (inverse_[i] != 0.0) direction_ += (alpha[i] - inverse_[i] * answer_.col(p).dot(direction_)) * h.s.col(p);
-  }
+  steer_ = flat(residual_).cast<float>();
+  pairs_.before(h.s, steer_);
+  precondition(steer_);
+  pairs_.after(h.s, steer_);
+  direction_ = steer_.cast<double>();
 }
 
 /// Goes along the direction, less far if that turns elements inside out or the energy does not fall.
@@ -352,17 +352,24 @@ bool VesselWall::advance(const WallState& state) noexcept {
   return false;
 }
 
+/// A new pair says what the elements answered; what touches the wall comes and goes and is counted by itself.
 void VesselWall::add_pair(WallHistory& h) noexcept {
   const int p = (h.newest + 1) % options_.memory;
-  work_ = flat(trial_x_) - flat(x_);
-  auto y = answer_.col(p);
-  y = flat(residual_) - flat(trial_residual_);  // gradients are minus residuals
-  const double sy = work_.dot(y);
-  inverse_[static_cast<std::size_t>(p)] = sy > 1e-10 * work_.norm() * y.norm() ? 1.0 / sy : 0.0;
-  h.s.col(p) = work_;
-  h.y.col(p) = flat(elastic_) - flat(trial_elastic_);
+  h.s.col(p) = (flat(trial_x_) - flat(x_)).cast<float>();
+  h.y.col(p) = (flat(elastic_) - flat(trial_elastic_)).cast<float>();  // gradients are minus forces
   h.newest = p;
   h.n = std::min(h.n + 1, options_.memory);
+  answer_alone(h, p);
+  for (int n = 0; n < n_loads_; ++n) {
+    const Load& l = loads_[static_cast<std::size_t>(n)];
+    if (l.counted.isZero(0.0)) continue;
+    Vec3 at = Vec3::Zero();
+    for (int a = 0; a < 8; ++a) at += l.weight[a] * h.s.col(p).segment<3>(3 * l.node[static_cast<std::size_t>(a)]).cast<double>();
+    const Vec3 f = l.counted * at;
+    for (int a = 0; a < 8; ++a) pairs_.answer(p).segment<3>(3 * l.node[static_cast<std::size_t>(a)]) += (l.weight[a] * f).cast<float>();
+  }
+  pairs_.note(h.s, p);
+  pairs_.count(h.n, h.newest);
 }
 
 WallSummary VesselWall::step(WallState& state) noexcept {
@@ -372,20 +379,16 @@ WallSummary VesselWall::step(WallState& state) noexcept {
   pressed_ = std::any_of(pressure_.begin(), pressure_.end(), [](double p) { return p != 0.0; });
   trial_x_ = x_;
   energy_ = evaluate(state);
-  if (!std::isfinite(energy_) || trial_residual_.colwise().norm().maxCoeff() > kViolent) {  // is it better to start from where it is?
+  if (!std::isfinite(energy_) || trial_residual_.colwise().norm().maxCoeff() > kViolent * options_.tolerance) {  // is it better to start from where it is?
     const double guessed = energy_;
-    work_ = flat(trial_residual_);
-    elastic_ = trial_elastic_;
     for (int i = 0; i < x_.cols(); ++i)
       if (!held_[static_cast<std::size_t>(i)]) trial_x_.col(i) = state.x.col(i);
     energy_ = evaluate(state);
-    if (energy_ < guessed) {
-      x_ = trial_x_;
-    } else {
-      energy_ = guessed;
-      trial_residual_ = work_.reshaped(3, x_.cols());
-      trial_elastic_ = elastic_;
+    if (!(energy_ < guessed)) {
+      trial_x_ = x_;
+      energy_ = evaluate(state);  // again, for what touches there
     }
+    x_ = trial_x_;
   }
   const bool sound = std::isfinite(energy_);
   find_frames(x_);
@@ -403,6 +406,7 @@ WallSummary VesselWall::step(WallState& state) noexcept {
     if (!advance(state)) {
       if (state.history.n > 0 && summary.iterations < options_.max_iterations) {  // what was learnt misleads: once more without
         state.history.n = 0;
+        pairs_.forget();
         ++summary.iterations;
         continue;
       }
@@ -417,7 +421,10 @@ WallSummary VesselWall::step(WallState& state) noexcept {
     x_.swap(trial_x_);
     residual_.swap(trial_residual_);
     elastic_.swap(trial_elastic_);
-    if (springs_stale()) gather_springs();
+    if (springs_stale()) {
+      gather_springs();
+      count_springs(state.history);
+    }
   }
   summary.sound = sound;
   if (sound) {

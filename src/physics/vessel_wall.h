@@ -6,7 +6,8 @@
 // TOG 36:23, 2017; P turned node by node into the wall's present directions, so that a stump that is turned over or an
 // edge that is everted meets a matrix of its own orientation, and stretched with them, so that what keeps its volume does so in P, too). Pairs are
 // kept from step to step: a soft tube has bending modes that P does not know, and the next step meets them again (Morales & Nocedal, SIAM J. Optim.
-// 10:1079, 2000). What they hold is the elements' part alone; springs come anew from the loads. Follower pressure on inner faces.
+// 10:1079, 2000). What they hold is the elements' part and that of edges that meet; springs are added as they touch and let go, within a step, too.
+// Follower pressure on inner faces.
 // Loads at material points are f + k (x_0 - x), x_0 where the point was when the load was given; what rubs or stands against the wall is part of the
 // step's energy with the bounds of its force (WallSlip, add_push): a wall this light goes all the way that a force kept for the step drives it, and
 // comes back in the next.
@@ -19,6 +20,7 @@
 #include "collision/surface_tree.h"
 #include "physics/vessel_wall_element.h"
 #include "physics/vessel_wall_factor.h"
+#include "physics/vessel_wall_pairs.h"
 #include "physics/vessel_wall_springs.h"
 #include "physics/wall_meeting.h"
 #include "physics/wall_state.h"
@@ -136,6 +138,8 @@ class VesselWall {
     Vec3 carried;                               // [m], by which the rigid thing moves in this step
     WallSlip slip;
     bool sticks = false;
+    Mat3 counted;                    // [N/m], as the pairs have it
+    Mat3 felt() const noexcept;      // [N/m], as they should
     Mat3 present() const noexcept { return sticks ? Mat3(stiffness + slip.stick * slip.along * slip.along.transpose()) : stiffness; }  // [N/m]
     Vec3 answer(const Vec3& moved, double& energy) noexcept;  // [N], on the wall
     bool stiff() const noexcept { return one_sided ? pushed > 0.0 : sticks || stiffness.trace() > kStiff; }
@@ -146,7 +150,9 @@ class VesselWall {
   void find_frames(const Points& x) noexcept;
   void guess(const WallState& state) noexcept;
   double evaluate(const WallState& state) noexcept;  // energy [J] and residual at trial_x_; infinite if an element is inside out
-  void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& d) noexcept;
+  void precondition(Eigen::VectorXf& b) noexcept;
+  void answer_alone(const WallHistory& h, int p) noexcept;
+  void count_springs(const WallHistory& h) noexcept;
   void recall(const WallHistory& h) noexcept;
   void direction(const WallHistory& h) noexcept;
   bool advance(const WallState& state) noexcept;
@@ -174,10 +180,9 @@ class VesselWall {
   bool pressed_ = false;
   double energy_ = 0.0, trial_energy_ = 0.0, taken_ = 1.0;  // taken: share of the last direction
   std::vector<Mat3> turn_;
-  Eigen::VectorXd direction_, work_;
-  Eigen::VectorXf turned_f_;
-  Eigen::MatrixXd answer_;            // [N], of each pair: y with what springs add in this step
-  std::array<double, 64> inverse_{};  // of each pair: 1 / (s . answer), 0: not to be used
+  Eigen::VectorXd direction_;
+  Eigen::VectorXf steer_, turned_;
+  WallPairs pairs_;                   // the history's with what springs add in this step
   mutable std::vector<int> found_;
 };
 

@@ -8,21 +8,22 @@ namespace filum {
 
 WallSprings::WallSprings(const SlabFactor& factor, const VesselMesh& mesh) : part_of_(mesh.node_part) {
   springs_.resize(kMost);
-  int largest = 0;
   for (int i = 0; i < mesh.n_nodes();) {
     int end = i;
     while (end < mesh.n_nodes() && part_of_[static_cast<std::size_t>(end)] == part_of_[static_cast<std::size_t>(i)]) ++end;
     Part p;
     p.first = i;
     const int slab = mesh.slab.front();
-    if (end - i <= kLargestPart) {
+    if (end - i <= kLargestPart)
       p.inverse = factor.inverse(mesh.slab[static_cast<std::size_t>(i)] - slab, mesh.slab[static_cast<std::size_t>(end) - 1] - slab + 1);
-      largest = std::max(largest, 3 * (end - i));
-    }
     parts_.push_back(std::move(p));
     i = end;
   }
-  columns_.resize(largest, 3 * kMost);
+  mark_.assign(part_of_.size(), -1);
+  nodes_.reserve(8 * kMost);
+  near_.resize(24 * kMost, 24 * kMost);
+  moved_.resize(24 * kMost, 3);
+  share_.resize(24 * kMost);
   small_.resize(3 * kMost, 3 * kMost);
   load_.resize(3 * kMost);
 }
@@ -47,36 +48,54 @@ Eigen::Vector3f WallSprings::at(const Spring& s, const Eigen::Ref<const Eigen::V
   return u;
 }
 
+/// The inverse among the nodes that springs stand on; nothing between parts.
+void WallSprings::gather_inverse() noexcept {
+  for (const int i : nodes_) mark_[static_cast<std::size_t>(i)] = -1;
+  nodes_.clear();
+  for (int k = 0; k < n_; ++k)
+    for (const int i : springs_[static_cast<std::size_t>(k)].node) {
+      int& place = mark_[static_cast<std::size_t>(i)];
+      if (place >= 0) continue;
+      place = 3 * static_cast<int>(nodes_.size());
+      nodes_.push_back(i);
+    }
+  for (std::size_t j = 0; j < nodes_.size(); ++j) {
+    const int part = part_of_[static_cast<std::size_t>(nodes_[j])];
+    const Part& p = parts_[static_cast<std::size_t>(part)];
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      auto block = near_.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j));
+      if (part_of_[static_cast<std::size_t>(nodes_[i])] == part)
+        block = p.inverse.block<3, 3>(3 * (nodes_[i] - p.first), 3 * (nodes_[j] - p.first));
+      else
+        block.setZero();
+    }
+  }
+}
+
 bool WallSprings::prepare() noexcept {
   ready_ = false;
   if (n_ == 0) return false;
-  for (int k = 0; k < n_; ++k) {
-    const Spring& s = springs_[static_cast<std::size_t>(k)];
-    const Part& p = parts_[static_cast<std::size_t>(s.part)];
-    auto column = columns_.block(0, 3 * k, p.inverse.rows(), 3);
-    column.setZero();
+  gather_inverse();
+  const auto used = static_cast<Eigen::Index>(3 * nodes_.size());
+  for (int j = 0; j < n_; ++j) {
+    const Spring& s = springs_[static_cast<std::size_t>(j)];
+    auto moved = moved_.topRows(used);
+    moved.setZero();
     for (std::size_t a = 0; a < 8; ++a) {
       const Eigen::Matrix3f J = s.blocks[a].transpose() * s.root;
       for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) column.col(c) += J(r, c) * p.inverse.col(3 * (s.node[a] - p.first) + r);
+        for (int r = 0; r < 3; ++r) moved.col(c) += J(r, c) * near_.col(mark_[static_cast<std::size_t>(s.node[a])] + r).head(used);
     }
-  }
-  for (int i = 0; i < n_; ++i) {
-    const Spring& s = springs_[static_cast<std::size_t>(i)];
-    for (int j = 0; j < n_; ++j) {
-      auto block = small_.block<3, 3>(3 * i, 3 * j);
-      block.setZero();
-      if (springs_[static_cast<std::size_t>(j)].part == s.part) {
-        const int first = parts_[static_cast<std::size_t>(s.part)].first;
-        Eigen::Matrix3f u = Eigen::Matrix3f::Zero();
-        for (std::size_t a = 0; a < 8; ++a) u += s.blocks[a] * columns_.block<3, 3>(3 * (s.node[a] - first), 3 * j);
-        block = s.root.transpose() * u;
-      }
-      if (i == j) block += Eigen::Matrix3f::Identity();
+    for (int i = j; i < n_; ++i) {
+      const Spring& t = springs_[static_cast<std::size_t>(i)];
+      Eigen::Matrix3f u = Eigen::Matrix3f::Zero();
+      for (std::size_t a = 0; a < 8; ++a) u += t.blocks[a] * moved.block<3, 3>(mark_[static_cast<std::size_t>(t.node[a])], 0);
+      small_.block<3, 3>(3 * i, 3 * j) = t.root.transpose() * u;
     }
+    small_.block<3, 3>(3 * j, 3 * j) += Eigen::Matrix3f::Identity();
   }
-  Eigen::Ref<Eigen::MatrixXf> used = small_.topLeftCorner(3 * n_, 3 * n_);
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXf>> llt(used);
+  Eigen::Ref<Eigen::MatrixXf> lower = small_.topLeftCorner(3 * n_, 3 * n_);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXf>> llt(lower);
   ready_ = llt.info() == Eigen::Success;
   return ready_;
 }
@@ -91,9 +110,16 @@ void WallSprings::correct(Eigen::Ref<Eigen::VectorXf> x) noexcept {
   const auto factor = small_.topLeftCorner(3 * n_, 3 * n_);
   factor.triangularView<Eigen::Lower>().solveInPlace(load);
   factor.transpose().triangularView<Eigen::Upper>().solveInPlace(load);
+  share_.head(static_cast<Eigen::Index>(3 * nodes_.size())).setZero();
   for (int k = 0; k < n_; ++k) {
-    const Part& p = parts_[static_cast<std::size_t>(springs_[static_cast<std::size_t>(k)].part)];
-    for (int c = 0; c < 3; ++c) x.segment(3 * p.first, p.inverse.rows()) -= load[3 * k + c] * columns_.col(3 * k + c).head(p.inverse.rows());
+    const Spring& s = springs_[static_cast<std::size_t>(k)];
+    const Eigen::Vector3f f = s.root * load.segment<3>(3 * k);
+    for (std::size_t a = 0; a < 8; ++a) share_.segment<3>(mark_[static_cast<std::size_t>(s.node[a])]) += s.blocks[a].transpose() * f;
+  }
+  for (std::size_t j = 0; j < nodes_.size(); ++j) {
+    const Part& p = parts_[static_cast<std::size_t>(part_of_[static_cast<std::size_t>(nodes_[j])])];
+    x.segment(3 * p.first, p.inverse.rows()).noalias() -=
+        p.inverse.middleCols<3>(3 * (nodes_[j] - p.first)) * share_.segment<3>(static_cast<Eigen::Index>(3 * j));
   }
 }
 

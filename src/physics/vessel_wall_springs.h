@@ -2,7 +2,8 @@
 // Springs at material points, brought into the wall's first matrix: (P + J^T S J)^-1 = P^-1 - C L (I + L^T W L)^-1 L^T C^T with
 // C = P^-1 J^T, W = J C, S = L L^T (Woodbury). A needle or thread in its track is a hundred times stiffer than the tissue about it; left
 // out of P, each such point costs the iteration several rounds. P never changes, so its inverse over each part is kept whole, in
-// single precision; parts of more than kLargestPart nodes go without. Test: vessel_wall_springs_test.
+// single precision, and only what joins the springs' own nodes is read to make the correction: springs that come and go within a step are
+// cheap. Parts of more than kLargestPart nodes go without. Test: vessel_wall_springs_test.
 
 #include <array>
 #include <vector>
@@ -51,7 +52,13 @@ class WallSprings {
   std::vector<Part> parts_;
   std::vector<int> part_of_;
   std::vector<Spring> springs_;
-  Eigen::MatrixXf columns_;  // C L, rows counted from the part's first node
+  void gather_inverse() noexcept;
+
+  std::vector<int> nodes_;   // that springs stand on
+  std::vector<int> mark_;    // of each node: its first row in near_, -1: none
+  Eigen::MatrixXf near_;     // P^-1 among nodes_
+  Eigen::MatrixX3f moved_;   // of it, by the unit loads of one spring
+  Eigen::VectorXf share_;    // [N], on nodes_
   Eigen::MatrixXf small_;    // I + L^T W L, factored
   Eigen::VectorXf load_;
   int n_ = 0;

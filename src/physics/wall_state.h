@@ -17,7 +17,7 @@ struct WallPoint {
 /// The solver begins with them, so that they are part of the state.
 struct WallHistory {
   int n = 0, newest = -1;
-  Eigen::MatrixXd s, y;           // [m], [N], a column each
+  Eigen::MatrixXf s, y;           // [m], [N], a column each
 };
 
 struct WallState {
