@@ -30,7 +30,7 @@ const std::map<std::string, std::vector<std::string>> kMayUse = {
     {"analysis", {"base", "training", "session"}},
     {"video", {"base"}},
     {"ranks", {}},
-    {"reconcile", {"base", "collision", "physics", "video/tracks.h"}},
+    {"reconcile", {"base", "collision", "devices/bridge_line.h", "physics", "video/tracks.h"}},
     {"evidence", {"base", "collision", "physics", "world"}},
     {"cli", {"base", "reconcile", "ranks/ranks.h", "collision", "devices", "physics", "world", "haptics", "training", "session", "server", "analysis", "evidence"}},
 };

@@ -73,19 +73,19 @@ ForcepsCalibration ForcepsCalibration::parse(const std::string& text, const std:
 }
 
 double ForcepsCalibration::angle(std::uint16_t count) const noexcept {
-  return std::clamp(angle_gain * (count - angle_zero), -angle_limit, angle_limit);
+  return std::clamp(angle_line().value(count), -angle_limit, angle_limit);
 }
 
 double ForcepsCalibration::force(std::uint16_t count) const noexcept {
-  return std::clamp(force_gain * (count - force_zero), 0.0, force_limit);
+  return std::clamp(force_line().value(count), 0.0, force_limit);
 }
 
 std::uint16_t ForcepsCalibration::angle_count(double angle) const noexcept {
-  return nearest_count(angle_zero + angle / angle_gain);
+  return nearest_count(angle_line().count(angle));
 }
 
 std::uint16_t ForcepsCalibration::force_count(double force) const noexcept {
-  return nearest_count(force_zero + force / force_gain);
+  return nearest_count(force_line().count(force));
 }
 
 }  // namespace filum

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "devices/bridge_line.h"
+
 namespace filum {
 
 /// What a fit said of one channel; absent in a nominal file.
@@ -33,6 +35,8 @@ struct ForcepsCalibration {
   static ForcepsCalibration load(const std::string& path);
   static ForcepsCalibration parse(const std::string& text, const std::string& file_name);
 
+  BridgeLine angle_line() const noexcept { return {angle_zero, angle_gain}; }
+  BridgeLine force_line() const noexcept { return {force_zero, force_gain}; }
   /// [rad], at most the stop; below zero the blades are bent beyond closure, at most as far.
   double angle(std::uint16_t count) const noexcept;
   /// [N], between 0 and the overload limit.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "evidence/problem_list.h"
-#include "evidence/track_rig.h"
+#include "physics/track_rig.h"
 
 namespace filum {
 namespace {

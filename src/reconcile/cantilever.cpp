@@ -3,7 +3,7 @@
 //   theta'' = -(1 - s) G cos(theta) (theta downward positive), theta(0) = 0, theta'(1) = kappa0 L.
 // Integrated by the midpoint rule from the free end, shot on the angle there. kappa0 changes sign with the orientation.
 // Creep: E -> E / J(t) at the overhang of the moment; set: rest curvature = fraction of the largest past curvature at the same
-// distance from the tip. Tested against the trainer's rod and the small-deflection limit G/8 (cantilever_test).
+// distance from the tip, or of the largest anywhere. Tested against the trainer's rod and the small-deflection limit G/8 (cantilever_test).
 
 #include <algorithm>
 #include <cmath>
@@ -13,10 +13,10 @@
 namespace filum::reconcile {
 namespace {
 
-constexpr int kSteps = 40;
+constexpr int kSteps = 40, kFinest = 2;
 constexpr double kGravity = 9.81;
 
-using Stations = std::array<double, kSteps + 1>;
+using Stations = std::array<double, kFinest * kSteps + 1>;  // of which steps + 1 count
 
 struct Shape {
   double drop = 0.0, reach = 1.0;  // over L
@@ -24,10 +24,10 @@ struct Shape {
 };
 
 /// The shape from tip angle `tip`; returns theta at the clamp. Arc length x runs from the tip.
-double shoot(double G, const Stations& rest, double tip, Shape& shape) {
-  const double h = 1.0 / kSteps;
+double shoot(double G, const Stations& rest, int steps, double tip, Shape& shape) {
+  const double h = 1.0 / steps;
   double theta = tip, bend = 0.0, drop = 0.0, reach = 0.0;  // bend = theta' - rest, along s towards the clamp
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < steps; ++i) {
     const double x = i * h, mid = x + 0.5 * h, rest_mid = 0.5 * (rest[static_cast<std::size_t>(i)] + rest[static_cast<std::size_t>(i) + 1]);
     shape.curvature[static_cast<std::size_t>(i)] = bend + rest[static_cast<std::size_t>(i)];
     const double theta_mid = theta - 0.5 * h * (bend + rest[static_cast<std::size_t>(i)]);
@@ -37,19 +37,19 @@ double shoot(double G, const Stations& rest, double tip, Shape& shape) {
     theta -= h * (bend_mid + rest_mid);
     bend += h * G * mid * std::cos(theta_mid);
   }
-  shape.curvature[kSteps] = bend + rest[kSteps];
+  shape.curvature[static_cast<std::size_t>(steps)] = bend + rest[static_cast<std::size_t>(steps)];
   shape.drop = drop;
   shape.reach = reach;
   return theta;
 }
 
-Shape elastica(double G, const Stations& rest, double& tip) {
+Shape elastica(double G, const Stations& rest, int steps, double& tip) {
   Shape shape;
   for (int i = 0; i < 30; ++i) {
-    const double f = shoot(G, rest, tip, shape);
+    const double f = shoot(G, rest, steps, tip, shape);
     if (std::abs(f) < 1e-9) break;
     Shape other;
-    const double slope = (shoot(G, rest, tip + 1e-6, other) - f) / 1e-6;
+    const double slope = (shoot(G, rest, steps, tip + 1e-6, other) - f) / 1e-6;
     tip -= std::clamp(f / (std::abs(slope) > 0.05 ? slope : 0.05), -0.4, 0.4);
   }
   return shape;
@@ -92,6 +92,8 @@ void Cantilever::trace(const Trial& t, const Setting& s, const Each& each) const
   const double weight = 16.0 * t.size("density") * kGravity / (E * d * d);
   const double *curl = s.on(Effect::rest_curvature), *creep = s.on(Effect::bending_creep), *set = s.on(Effect::permanent_set);
   const double side = t.word("orientation") == "up" ? -1.0 : 1.0;
+  const int steps = kSteps * std::min(s.mesh, kFinest);
+  double sharpest = 0.0;  // [1/m], of the whole thread so far
   Stations most{};  // [1/m], at a distance from the tip in parts of the longest overhang
   double tip = 0.0, last_L = -1.0, last_G = -1.0;
   Stations rest{};
@@ -106,23 +108,28 @@ void Cantilever::trace(const Trial& t, const Setting& s, const Each& each) const
     }
     if (n == 0 || set != nullptr || std::abs(L - last_L) > 1e-12 * L || std::abs(G - last_G) > 1e-9 * G) {
       rest.fill(0.0);
-      for (int i = 0; i <= kSteps; ++i) {
+      for (int i = 0; i <= steps; ++i) {
         if (curl != nullptr) {
-          const double away = s.form(Effect::rest_curvature) == 0 ? 1.0 : 2.0 * static_cast<double>(i) / kSteps;
+          const double away = s.form(Effect::rest_curvature) == 0 ? 1.0 : 2.0 * static_cast<double>(i) / steps;
           rest[static_cast<std::size_t>(i)] += side * curl[0] * L * away;
         }
         if (set == nullptr) continue;
-        const double at = std::min(kSteps * (static_cast<double>(i) / kSteps) * L / longest_, kSteps - 1e-9);
+        if (s.form(Effect::permanent_set) == 1) {
+          rest[static_cast<std::size_t>(i)] += set[0] * L * sharpest;
+          continue;
+        }
+        const double at = std::min(i * L / longest_, steps - 1e-9);
         const auto k = static_cast<std::size_t>(at);
         rest[static_cast<std::size_t>(i)] += set[0] * L * (most[k] + (at - static_cast<double>(k)) * (most[k + 1] - most[k]));
       }
       if (n == 0) tip = std::min(1.2, G / 6.0);
-      shape = elastica(G, rest, tip);
+      shape = elastica(G, rest, steps, tip);
       last_L = L;
       last_G = G;
-      for (int i = 0; set != nullptr && i <= kSteps; ++i) {
+      for (int i = 0; set != nullptr && i <= steps; ++i) {
+        sharpest = std::max(sharpest, shape.curvature[static_cast<std::size_t>(i)] / L);
         const double at = static_cast<double>(i) * longest_ / L;
-        if (at > kSteps - 1e-9) break;
+        if (at > steps - 1e-9) break;
         const auto k = static_cast<std::size_t>(at);
         const double kappa = (shape.curvature[k] + (at - static_cast<double>(k)) * (shape.curvature[k + 1] - shape.curvature[k])) / L;
         most[static_cast<std::size_t>(i)] = std::max(most[static_cast<std::size_t>(i)], kappa);
@@ -145,7 +152,8 @@ RigModel::BentThread Cantilever::bent_thread(const Trial& t, const Setting& s, E
   BentThread out;
   trace(t, s, [&](Eigen::Index n, double L, double G, const Stations& rest, const Shape&) {
     if (n < sample) return true;
-    out = {L, G, std::vector<double>(rest.rbegin(), rest.rend())};
+    const auto tip = rest.begin(), clamp = tip + kSteps * std::min(s.mesh, kFinest) + 1;
+    out = {L, G, std::vector<double>(std::make_reverse_iterator(clamp), std::make_reverse_iterator(tip))};
     return false;
   });
   return out;
@@ -190,6 +198,7 @@ std::vector<Form> Cantilever::forms() const {
     f.push_back({Effect::bending_creep, 2, "power of time", {{"a", "-", 1e-4, 3.0, true}, {"exponent", "-", 0.05, 1.0, false}}, grid({{0.1}, {0.3}}), false});
   }
   f.push_back({Effect::permanent_set, 0, "fraction of the largest past curvature", {{"fraction", "-", 0.002, 0.9, false}}, {{0.1}}, false});
+  f.push_back({Effect::permanent_set, 1, "one curvature for the whole length, a fraction of the largest past one", {{"fraction", "-", 0.002, 0.9, false}}, {{0.1}}, false});
   return f;
 }
 

@@ -31,15 +31,22 @@ class Capstan final : public RigModel {
     return {down > 0 ? std::clamp(up / down, 0.01, 2.0) : data().nominal.at("friction_coefficient")};
   }
 
+  bool steps_in_time() const override { return false; }
+
+  Slide slide(const Trial& t, const Setting& s, Eigen::Index n) const override {
+    const double v = t.at("speed")[n], wrap = t.at("wrap_angle")[n];
+    double mu = s.base[0];
+    if (const double* p = s.on(Effect::speed_dependent_friction)) mu = friction(mu, p, s.form(Effect::speed_dependent_friction), std::abs(v));
+    return {mu * s.scale, v < 0 ? -wrap : wrap, t.at("hold_force")[n]};
+  }
+
   void rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const override {
-    const double *speed = s.on(Effect::speed_dependent_friction), *bend = s.on(Effect::bending_stiffness_loss), *drag = s.on(Effect::viscous_drag);
+    const double *bend = s.on(Effect::bending_stiffness_loss), *drag = s.on(Effect::viscous_drag);
     out.resize(t.samples(), static_cast<Eigen::Index>(data().outputs.size()));
     for (Eigen::Index n = 0; n < t.time.size(); ++n) {
-      const double v = t.at("speed")[n], hold = t.at("hold_force")[n], wrap = t.at("wrap_angle")[n];
-      double mu = s.base[0];
-      if (speed != nullptr) mu = friction(mu, speed, s.form(Effect::speed_dependent_friction), std::abs(v));
-      mu *= s.scale;
-      double y = hold * std::exp(std::min(v < 0 ? -mu * wrap : mu * wrap, 20.0));
+      const Slide slid = slide(t, s, n);
+      const double v = t.at("speed")[n], wrap = std::abs(slid.wrap);
+      double y = slid.hold * std::exp(std::min(slid.mu * slid.wrap, 20.0));
       if (bend != nullptr) y += bend[0] * (s.form(Effect::bending_stiffness_loss) == 0 || wrap > 1e-6 ? (v < 0 ? -1.0 : 1.0) : 0.0);
       if (drag != nullptr && (s.form(Effect::viscous_drag) == 0 || t.word("medium") == "wet")) y += drag[0] * v;
       out(n, 0) = y;

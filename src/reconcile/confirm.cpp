@@ -6,7 +6,7 @@
 namespace filum::reconcile {
 namespace {
 
-constexpr int kMostRounds = 3;
+constexpr int kMostRounds = 6;
 
 std::vector<Eigen::MatrixXd> run_all(const Fitter& fitter, const FullSolver& solver, const Fit& f, bool fine, bool& good) {
   const Dataset& d = fitter.model().data();
@@ -71,8 +71,10 @@ FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& r
 
 bool confirm(const Search& search, const Fit& winner, const Options& options, Result& result) {
   const Fitter& fitter = search.fitter();
-  const auto solver = make_full_solver(fitter.model(), winner.forms);
-  if (solver == nullptr) return true;
+  const auto solver = make_full_solver(fitter.model());
+  // the instants at which layers give way are read off each record: no solver can be asked for them
+  const bool layers = std::any_of(winner.forms.begin(), winner.forms.end(), [](const Form* f) { return f->effect == Effect::layer_rupture; });
+  if (solver == nullptr || layers) return true;
   if (options.progress) options.progress("re-simulation", 0.9);
   stop_if_cancelled(options);
   const FullFit base = refit_fully(fitter, *solver, search.base(), false);

@@ -230,6 +230,19 @@ double gain_asked(const Fitter& fitter, const Fit& f) {
   return median(std::move(sizes));
 }
 
+/// The fit with steps of its differences at which they agree with those of twice the step, where the usual ones do not.
+Fit with_checked_steps(const Fitter& fitter, const Fit& f) {
+  Fitter stepped(fitter);
+  bool usual = true;
+  const auto checked = check_sensitivities(fitter, f);
+  if (checked.size() != fitter.globals(f.forms).size()) return f;  // one that is held
+  for (const Sensitivity& s : checked) {
+    stepped.steps.push_back(s.step);
+    usual = usual && s.step == 1.0;
+  }
+  return usual ? f : stepped.fit(f.forms, f.base, f.params, {3, 1e-5}, &f);
+}
+
 void name(const Search& search, const Fit& winner, Result& r, const Options& options) {
   const auto rivals = rivals_of(search, winner, r.rules, r.not_testable);
   const Fitter& fitter = search.fitter();
@@ -239,9 +252,10 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   const bool holds = !c.done || c.explained >= r.rules.held_out;
   const double explained = search.explained(winner);
   const bool confirmed = confirm(search, winner, options, r);
-  r.effects = effect_estimates(fitter, winner, search.dispersion());
+  const Fit sure = with_checked_steps(fitter, winner);
+  r.effects = effect_estimates(fitter, sure, search.dispersion());
   for (const Fit& other : search.other_forms(winner, r.rules.tie)) widen_by_forms(r.effects, effect_estimates(fitter, other, search.dispersion()));
-  r.baseline = baseline_estimates(fitter, winner, search.dispersion());
+  r.baseline = baseline_estimates(fitter, sure, search.dispersion());
   for (const Fit& f : search.candidates())
     if (&f != &winner && r.rivals.size() < 6) r.rivals.push_back({effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""});
   if (!confirmed) {
@@ -322,6 +336,8 @@ void name_nothing(const Search& search, Result& r, const Options& options) {
 
 void finish(const Search& search, const Fit* winner, Result& r) {
   const Fitter& fitter = search.fitter();
+  r.numerics = solver_error(fitter, winner != nullptr ? *winner : search.base());
+  r.numerics.sensitivities = check_sensitivities(fitter, winner != nullptr ? *winner : search.base());
   r.noise = fitter.noise();
   r.dispersion = search.dispersion();
   r.before = search.base();

@@ -142,19 +142,25 @@ Eigen::VectorXd Fitter::residual(int trial, const Setting& s, std::vector<Eigen:
   return white;
 }
 
+Eigen::VectorXd Fitter::difference(const Fit& f, const Global& g, int trial, double factor) const {
+  return difference(f, g, trial, factor, residual(trial, setting(f, trial)));
+}
+
+Eigen::VectorXd Fitter::difference(const Fit& f, const Global& g, int trial, double factor, const Eigen::VectorXd& r0) const {
+  Fit probe = f;
+  const double x = get(f, g), top = g.logarithmic ? std::log(g.high) : g.high;
+  double h = factor * (g.logarithmic ? 1e-5 : 1e-6 * std::max(std::abs(x), 1e-2 * g.unit));
+  if (x + h > top) h = -h;
+  put(probe, g, x + h);
+  return (residual(trial, setting(probe, trial)) - r0) / h;
+}
+
 void Fitter::linearise(const Fit& f, const std::vector<Global>& g, int trial, const Eigen::VectorXd& r0, Eigen::MatrixXd& J) const {
   const auto own = own_parameters();
   J.resize(r0.size(), static_cast<Eigen::Index>(g.size()) + own);
+  for (std::size_t k = 0; k < g.size(); ++k)
+    J.col(static_cast<Eigen::Index>(k)) = difference(f, g[k], trial, steps.size() == g.size() ? steps[k] : 1.0, r0);
   Fit probe = f;
-  for (std::size_t k = 0; k < g.size(); ++k) {
-    const double x = get(f, g[k]);
-    double h = g[k].logarithmic ? 1e-5 : 1e-6 * std::max(std::abs(x), 1e-2 * g[k].unit);
-    const double top = g[k].logarithmic ? std::log(g[k].high) : g[k].high;
-    if (x + h > top) h = -h;
-    put(probe, g[k], x + h);
-    J.col(static_cast<Eigen::Index>(k)) = (residual(trial, setting(probe, trial)) - r0) / h;
-    put(probe, g[k], x);
-  }
   auto column = static_cast<Eigen::Index>(g.size());
   const auto t = static_cast<std::size_t>(trial);
   const auto step = [&](std::vector<double>& v) {

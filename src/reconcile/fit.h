@@ -56,6 +56,8 @@ class Fitter {
   std::vector<bool> use;
   /// Added to what the rig's model predicts, trial by trial (confirm.h); empty: nothing.
   std::vector<Eigen::MatrixXd> correction;
+  /// Steps of the differences over the usual ones, one for each global parameter (numerics.h); empty: 1.
+  std::vector<double> steps;
 
   /// Fit from a starting point. An empty `params` takes the first start of each form.
   Fit fit(const std::vector<const Form*>& forms, const std::vector<double>& base, const std::vector<std::vector<double>>& params,
@@ -81,10 +83,13 @@ class Fitter {
   Setting setting(const Fit& f, int trial) const;
   /// Jacobian of the whitened residual to global parameters (and the record's own), one trial.
   void linearise(const Fit& f, const std::vector<Global>& g, int trial, const Eigen::VectorXd& r0, Eigen::MatrixXd& J) const;
+  /// One column of it, at `factor` times the usual step.
+  Eigen::VectorXd difference(const Fit& f, const Global& g, int trial, double factor) const;
   int own_parameters() const { return (model_.has_scale() ? 1 : 0) + (model_.has_gain() ? 1 : 0); }
 
  private:
   struct Solver;
+  Eigen::VectorXd difference(const Fit& f, const Global& g, int trial, double factor, const Eigen::VectorXd& r0) const;
   double get(const Fit& f, const Global& g) const;
   void put(Fit& f, const Global& g, double value) const;
   void complete(Fit& f, const std::vector<Global>& g) const;

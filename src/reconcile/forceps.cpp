@@ -1,9 +1,10 @@
-// forceps-bridge: the straight lines of a calibration, counts = offset + gain * value (the inverse of devices/forceps_calibration),
+// forceps-bridge: the straight lines of a calibration, counts = offset + gain * value (devices/bridge_line.h, which the handle's counts are read with),
 // and what bends them: temperature, a bridge's quadratic and cubic terms, play, cross-talk of grip force into the strain gauge.
 // The play operator is that of Brokate & Sprekels 1996. Reference temperature: the mean of the record (the offset takes the rest).
 #include <algorithm>
 #include <cmath>
 
+#include "devices/bridge_line.h"
 #include "reconcile/model.h"
 
 namespace filum::reconcile {
@@ -44,7 +45,8 @@ class Forceps final : public RigModel {
         else follow(x, play[0]);
       }
       const double gain = s.scale * s.base[strain ? 0 : 2], offset = s.base[strain ? 1 : 3];
-      Eigen::VectorXd y = (offset + gain * x.array()).matrix();
+      const BridgeLine bridge{offset, 1.0 / gain};
+      Eigen::VectorXd y = x.unaryExpr([&](double v) { return bridge.count(v); });
       if (const double* p = s.on(Effect::bridge_nonlinearity); p != nullptr && (s.form(Effect::bridge_nonlinearity) < 2) == strain) {
         y.array() += p[0] * x.array().square();
         if (s.form(Effect::bridge_nonlinearity) % 2 == 0) y.array() += p[1] * x.array().cube();

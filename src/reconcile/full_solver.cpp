@@ -211,10 +211,12 @@ class TissueSolver final : public FullSolver {
 
 }  // namespace
 
-std::unique_ptr<FullSolver> make_full_solver(const RigModel& model, const std::vector<const Form*>& forms) {
-  (void)forms;
+std::unique_ptr<FullSolver> make_full_solver(const RigModel& model) {
   if (model.data().rig == Rig::suture_cantilever) return std::make_unique<RodSolver>(model);
   if (model.data().rig == Rig::spatula_press) return std::make_unique<TissueSolver>(model);
+  if (model.data().rig == Rig::vessel_inflation) return make_tube_solver(model);
+  if (model.data().rig == Rig::suture_pull) return make_pull_solver(model);
+  if (model.data().rig == Rig::needle_insertion) return make_needle_solver(model);
   return nullptr;
 }
 

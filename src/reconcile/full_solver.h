@@ -1,9 +1,13 @@
 #pragma once
-// The trainer's own solvers run on a rig's protocol: the rod (physics/implicit_rod) for suture-cantilever, the tissue (physics/linear_fem)
-// for spatula-press. Rigs whose deformation is homogeneous or whose law is algebraic (blocks, capstan, calibration, events of a needle)
-// have none: their closed form is the simulation. Test: full_solver_test.
+// The trainer's own solvers run on a rig's protocol: the rod (physics/implicit_rod) for suture-cantilever and, on a bar, suture-pull, the tissue
+// (physics/linear_fem) for spatula-press, the wall (physics/tube_slice) for vessel-inflation, the needle's track (physics/track_rig) for
+// needle-insertion. A block's deformation is homogeneous (its closed form is the simulation), the forceps' line is the calibration's own code
+// (devices/bridge_line.h), and a tip that is held has no input to simulate. Tests: full_solver_test, full_tube_test, full_pull_test, full_needle_test.
+
+#include <functional>
 
 #include "base/pose.h"
+#include "physics/hyperelastic.h"
 #include "reconcile/model.h"
 
 namespace filum::reconcile {
@@ -21,6 +25,34 @@ HangingRod hang_rod(double G, const std::vector<double>& rest, int edges);
 /// `cells`: under half the blade, across its width; the rest follows.
 double press_stiffness(const Vec3& box, double blade_length, double blade_width, double poissons_ratio, int cells);
 
+/// A tube without load, [m].
+struct TubeWall {
+  double inner = 0.0, outer = 0.0;
+};
+/// Lame's motion of the outer face over the finite elements', incompressible, at vanishing pressure; `around`: elements of a turn. NaN if not found.
+double tube_linear_factor(const TubeWall& wall, int around);
+/// The pressure of a wall of this law and opening angle [rad] beyond that of rubber with its mu, less `reduced` [Pa] (C [m2]), for motions up to `most` [m2].
+/// linear is NaN where an equilibrium was not found.
+WallTable tube_table(const TubeWall& wall, const WallLaw& law, double opening, double most, const std::function<double(double)>& reduced, int around);
+
+/// T2/T1 of a limp thread drawn over a round bar that it touches for `wrap` [rad]; NaN where the rod failed.
+double drawn_ratio(double mu, double wrap, int edges_a_radian);
+
+/// A needle's way into tissue and out again.
+struct NeedlePath {
+  struct Rupture {
+    double depth = 0.0, force = 0.0;  // [m] of the layer's face, [N] at which it gives way
+  };
+  std::vector<double> depth;          // [m], of each sample, 0 at the surface
+  double deepest = 1e-3;              // [m]
+  double stiffness = 100.0;           // [N/m], of the tissue under the point
+  double puncture = 5e-3;             // [N]
+  double friction = 0.0;              // [N/m], for each length inside
+  std::vector<Rupture> ruptures;      // further layers, from the surface down
+};
+/// Force [N] along the needle at each sample, steps of at most `move` [m] of a path scaled to 0.6 mm.
+std::vector<double> needle_forces(const NeedlePath& path, double move);
+
 class FullSolver {
  public:
   virtual ~FullSolver() = default;
@@ -29,7 +61,10 @@ class FullSolver {
   virtual bool run(const Trial& t, const Setting& s, bool fine, Eigen::MatrixXd& out) const = 0;
 };
 
-/// Null where there is none, or where an effect acts that the solver does not have.
-std::unique_ptr<FullSolver> make_full_solver(const RigModel& model, const std::vector<const Form*>& forms);
+/// Null where there is none.
+std::unique_ptr<FullSolver> make_full_solver(const RigModel& model);
+std::unique_ptr<FullSolver> make_tube_solver(const RigModel& model);
+std::unique_ptr<FullSolver> make_needle_solver(const RigModel& model);
+std::unique_ptr<FullSolver> make_pull_solver(const RigModel& model);
 
 }  // namespace filum::reconcile

@@ -32,13 +32,13 @@ Kernel prony(double g1, double tau1) { return {1.0 - g1, {g1}, {tau1}}; }
 
 Kernel prony(double g1, double tau1, double g2, double tau2) { return {1.0 - g1 - g2, {g1, g2}, {tau1, tau2}}; }
 
-Kernel fractional(double g1, double tau1, double order) {
-  constexpr int kTerms = 13;
-  Kernel k{1.0 - g1, std::vector<double>(kTerms), std::vector<double>(kTerms)};
+Kernel fractional(double g1, double tau1, double order, int finer) {
+  const int terms = 12 * finer + 1;
+  Kernel k{1.0 - g1, std::vector<double>(static_cast<std::size_t>(terms)), std::vector<double>(static_cast<std::size_t>(terms))};
   const double reach = std::min(4.0 / order, 9.0);  // of ln x; what lies beyond is gathered at the ends
   double sum = 0.0;
-  for (int i = 0; i < kTerms; ++i) {
-    const double x = reach * (2.0 * i / (kTerms - 1) - 1.0);
+  for (int i = 0; i < terms; ++i) {
+    const double x = reach * (2.0 * i / (terms - 1) - 1.0);
     k.weight[static_cast<std::size_t>(i)] = std::sin(order * kPi) / (std::cosh(order * x) + std::cos(order * kPi));
     k.tau[static_cast<std::size_t>(i)] = tau1 * std::exp(x);
     sum += k.weight[static_cast<std::size_t>(i)];
@@ -49,10 +49,8 @@ Kernel fractional(double g1, double tau1, double order) {
 
 namespace {
 
-constexpr int kModes = 12;
-
 /// What the series leaves out goes into one more exponential with its weight and first moment (sum w tau = size^2/D times `moment`).
-Kernel drainage(double g1, double time, const double (&m)[kModes], double weight, double moment) {
+Kernel drainage(double g1, double time, const std::vector<double>& m, double weight, double moment) {
   Kernel k{1.0 - g1, {}, {}};
   double rest = 1.0;
   for (const double a : m) {
@@ -69,17 +67,17 @@ Kernel drainage(double g1, double time, const double (&m)[kModes], double weight
 
 }  // namespace
 
-Kernel slab_drainage(double g1, double diffusivity, double size) {
-  double m[kModes];
-  for (int n = 0; n < kModes; ++n) m[n] = (2 * n + 1) * kPi;
+Kernel slab_drainage(double g1, double diffusivity, double size, int modes) {
+  std::vector<double> m;
+  for (int n = 0; n < modes; ++n) m.push_back((2 * n + 1) * kPi);
   return drainage(g1, size * size / diffusivity, m, 8.0, 1.0 / 12.0);
 }
 
-Kernel radial_drainage(double g1, double diffusivity, double size) {
-  double zeros[kModes] = {2.404825558, 5.520078110, 8.653727913, 11.79153444};
-  for (int n = 4; n < kModes; ++n) {  // McMahon's expansion, here right to 1e-7
+Kernel radial_drainage(double g1, double diffusivity, double size, int modes) {
+  std::vector<double> zeros = {2.404825558, 5.520078110, 8.653727913, 11.79153444};
+  for (int n = 4; n < modes; ++n) {  // McMahon's expansion, here right to 1e-7
     const double b = (n + 0.75) * kPi;
-    zeros[n] = b + 1.0 / (8.0 * b) - 124.0 / (3.0 * std::pow(8.0 * b, 3));
+    zeros.push_back(b + 1.0 / (8.0 * b) - 124.0 / (3.0 * std::pow(8.0 * b, 3)));
   }
   return drainage(g1, size * size / diffusivity, zeros, 4.0, 1.0 / 8.0);
 }

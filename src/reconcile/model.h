@@ -27,6 +27,13 @@ struct Form {
   bool line = false;                               // adds sine and cosine columns of free phase to every record
 };
 
+/// A tube's pressure by finite elements against the reduced model's, at motions r'^2 = R^2 + 2 C.
+struct WallTable {
+  double linear = 1.0;               // factor of the linear part
+  std::vector<double> C, beyond;     // [m2] ascending from 0, [Pa] to be added
+  double at(double c) const;         // [Pa], between them, and beyond them in proportion
+};
+
 /// Values of one evaluation; null where an effect is off.
 struct Setting {
   std::array<const double*, kEffects> p{};
@@ -34,6 +41,8 @@ struct Setting {
   const double* base = nullptr;
   double scale = 1.0;   // of this specimen's stiffness (friction coefficient, gain) against the batch
   double gain = 1.0;    // of this record's output
+  int mesh = 1;         // times as many cells, points and modes as usual: 2 tells what the usual number costs (numerics.h)
+  const WallTable* wall = nullptr;  // vessel-inflation: what the wall's finite elements say beyond the reduced tube (full_tube.cpp)
 
   const double* on(Effect e) const { return p[static_cast<std::size_t>(index_of(e))]; }
   int form(Effect e) const { return kind[static_cast<std::size_t>(index_of(e))]; }
@@ -69,6 +78,8 @@ class RigModel {
   virtual Measured measured(int /*parameter*/, const std::vector<double>& base, const std::vector<double>& /*scale of each trial*/) const {
     return {base[0], base[0], base[0]};
   }
+  /// Whether the rig's own model goes from sample to sample, so that finer samples change it.
+  virtual bool steps_in_time() const { return true; }
   /// Order of the polynomial in time that every record may have, -1: none.
   virtual int free_polynomial() const { return -1; }
 
@@ -79,6 +90,13 @@ class RigModel {
   };
   virtual BentThread bent_thread(const Trial&, const Setting&, Eigen::Index /*sample*/) const { return {}; }
   virtual double punch_stiffness(const Trial&, double /*poissons_ratio*/) const { return 1.0; }  // [m], force per depth and modulus
+  /// A thread that slides over a cylinder: pull = hold exp(mu wrap), wrap negative where it runs back.
+  struct Slide {
+    double mu = 0.0, wrap = 0.0, hold = 0.0;  // [-], [rad], [N]
+  };
+  virtual Slide slide(const Trial&, const Setting&, Eigen::Index /*sample*/) const { return {}; }
+  /// Pressure [Pa] that the effects of a tube's wall ask for beyond the linear law at motion C [m2].
+  virtual double wall_pressure(const Trial&, const Setting&, double /*C*/) const { return 0.0; }
 
   /// rig(), then the sensor.
   void simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const;

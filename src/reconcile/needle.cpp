@@ -48,6 +48,7 @@ class Needle final : public RigModel {
     const double k = down > 0 && up > 0 ? up / down : data().nominal.at("stiffness");
     return {k, depth_.empty() ? 10.0 * k * deepest_ : k * depth_[0]};
   }
+  bool steps_in_time() const override { return false; }
   bool fitted(int parameter) const override { return parameter == 0; }
   Measured measured(int, const std::vector<double>& base, const std::vector<double>& scale) const override {
     std::vector<double> forces;

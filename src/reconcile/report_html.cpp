@@ -38,6 +38,8 @@ std::string quantity(double v, const std::string& unit) {
   return plain && std::isfinite(v) && v != 0.0 ? format_prefixed(v, unit) : number(v) + (unit == "-" ? "" : " " + unit);
 }
 
+std::string at_most(double share) { return share < 1e-5 ? "less than 0.001 %" : "at most " + number(100 * share, 2) + " %"; }
+
 std::string interval(const Estimate& e) { return quantity(e.value, e.unit) + " (" + quantity(e.low, e.unit) + " to " + quantity(e.high, e.unit) + ")"; }
 
 /// A channel as its file writes it.
@@ -91,12 +93,14 @@ std::string record_plot(const Dataset& d, const Result& r, std::size_t i, std::s
   }
   lines.push_back({x, written(out, t.at(d.outputs[c])), "#999", true, {}});
   lines.push_back({x, written(out, r.before.predicted[i][c]), "#26c", false, {}});
-  if (i < r.after.predicted.size() && !r.after.predicted[i].empty()) lines.push_back({x, written(out, r.after.predicted[i][c]), "#c22", false, {}});
+  const bool named = r.verdict == "effect" || r.verdict == "ambiguous";
+  if (named && i < r.after.predicted.size() && !r.after.predicted[i].empty()) lines.push_back({x, written(out, r.after.predicted[i][c]), "#c22", false, {}});
   return plot({input == nullptr ? t.file + ": " + protocol_of(t) : protocol_of(t), input != nullptr ? axis(*input) : t.clocked ? "time [s]" : "sample", axis(out)}, lines);
 }
 
 void curves(const Dataset& d, const Result& r, std::ostringstream& s) {
-  s << "<h2>Measured, before and after</h2><p>Grey: measured; pale: from the least to the most of its replicates; blue: the baseline, refitted; red: with what the verdict names. Each record keeps its own stiffness.</p><div class='plots'>";
+  s << "<h2>Measured, before and after</h2><p>Grey: measured; pale: from the least to the most of its replicates; blue: the baseline, refitted" << (r.verdict == "effect" ? "; red: with what the verdict names" : r.verdict == "ambiguous" ? "; red: with the first rival" : "")
+    << ". Each record keeps its own stiffness.</p><div class='plots'>";
   const Channel* input = nullptr;
   for (const Channel& c : d.channels)
     if (c.input && c.name != "time" && input == nullptr) input = &c;
@@ -146,6 +150,16 @@ void checks(const Result& r, std::ostringstream& s) {
       << " s), the best score test of the catalogue " << number(x.score, 4) << ". The rarer of the two among " << x.repetitions << " simulated repetitions in which the baseline is true: p = " << number(x.p, 2)
       << ". What lies beyond the noise amounts to " << number(100 * x.excess, 2) << " % of full scale; " << number(100 * r.rules.materiality, 2) << " % is material.</p>\n";
   }
+  if (!r.numerics.sensitivities.empty()) {
+    s << "<h2>Numbers behind the fit</h2><p>Halving the time step changes a record's prediction by " << at_most(r.numerics.time) << " of full scale, halving the cells by " << at_most(r.numerics.mesh)
+      << (r.numerics.solver() > r.rules.materiality ? "; that takes the place of what the rules call material" : "") << ". ";
+    std::string doubtful;
+    for (const Sensitivity& v : r.numerics.sensitivities)
+      if (v.disagreement > kDoubtful) doubtful += (doubtful.empty() ? "" : ", ") + v.parameter + " (" + number(100 * v.disagreement, 2) + " %)";
+    s << (doubtful.empty() ? "Every derivative is the same, within " + number(100 * kDoubtful, 2) + " %, by differences at one and at two steps."
+                           : "Derivatives by differences at one and at two steps disagree for " + escaped(doubtful) + ": intervals of these rest on a kink of the model and are to be doubted.")
+      << "</p>\n";
+  }
   if (!r.confirmation) return;
   const Confirmation& c = *r.confirmation;
   s << "<h2>Full re-simulation</h2>";
@@ -153,9 +167,9 @@ void checks(const Result& r, std::ostringstream& s) {
     s << "<p>" << escaped(c.solver) << " did not come to rest for these values; the reduced model stands alone.</p>\n";
     return;
   }
-  s << "<p>Baseline and winner were fitted again with " << escaped(c.solver) << ". It differs from the reduced model by " << number(100 * c.difference, 2) << " % of full scale before that, and from itself with half the mesh by "
-    << number(100 * c.mesh, 2) << " %. Evidence " << number(-c.evidence, 4) << "; chi-squared a sample " << number(c.chi2_before, 3) << " before, " << number(c.chi2_after, 3) << " after; the name "
-    << (c.holds ? "holds" : "does not hold") << ".</p><table>" << row({"parameter", "by the full solver"}, "th");
+  s << "<p>Baseline and best candidate were fitted again with " << escaped(c.solver) << ". It differs from the reduced model by " << number(100 * c.difference, 2) << " % of full scale before that, and from itself with half the mesh by "
+    << number(100 * c.mesh, 2) << " %. Evidence " << number(-c.evidence, 4) << "; chi-squared a sample " << number(c.chi2_before, 3) << " before, " << number(c.chi2_after, 3) << " after; the reduced model's candidate "
+    << (c.holds ? "is borne out" : "is not borne out") << ".</p><table>" << row({"parameter", "by the full solver"}, "th");
   for (const NamedEffect& e : c.values)
     for (const Estimate& p : e.parameters) s << row({info(e.effect).name + ": " + p.name, interval(p)});
   s << "</table>\n";
@@ -170,8 +184,12 @@ void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
     s << row({d.outputs[c], quantity(o.sigma, unit_of(d, d.outputs[c])), o.from, number(o.rho, 2), quantity(o.full_scale, unit_of(d, d.outputs[c]))});
   }
   s << "</table><p>Records of one batch differ in stiffness by " << number(100 * r.noise.scatter, 2) << " % (1 sd). Structure left in the residual: " << number(r.structure_before, 3) << " standard deviations before, "
-    << number(r.structure_after, 3) << " after. Overdispersion used for all comparisons: " << number(r.dispersion, 3) << ".</p>\n<h2>Parameters</h2><table>" << row({"parameter", "baseline alone", "with the effect"}, "th");
+    << number(r.structure_after, 3) << " after. Overdispersion used for all comparisons: " << number(r.dispersion, 3) << ".</p>\n<h2>Parameters</h2><table>" << (r.verdict == "effect" ? row({"parameter", "baseline alone", "with the effect"}, "th") : row({"parameter", "baseline"}, "th"));
   for (const Estimate& e : r.baseline_alone) {
+    if (r.verdict != "effect") {
+      s << row({e.name, interval(e)});
+      continue;
+    }
     std::string after = "-";
     for (const Estimate& a : r.baseline)
       if (a.name == e.name) after = interval(a);

@@ -104,6 +104,9 @@ Json report_json(const Dataset& d, const Result& r) {
     j["confirmation"] = {{"solver", c.solver}, {"ran", c.ran}, {"holds", c.holds}, {"difference", finite(c.difference)}, {"mesh", finite(c.mesh)}, {"evidence", finite(-c.evidence)},
                          {"share", finite(c.share)}, {"parameters", values}};
   }
+  Json steps = Json::object();
+  for (const Sensitivity& v : r.numerics.sensitivities) steps[v.parameter] = {{"disagreement", finite(v.disagreement)}, {"step", v.step}};
+  j["numerics"] = {{"time_halved", finite(r.numerics.time)}, {"mesh_halved", finite(r.numerics.mesh)}, {"sensitivities", steps}};
   Json hardware = Json::array();
   for (const HardwareCheck& h : check_hardware(d)) hardware.push_back({{"check", h.what}, {"where", h.where}, {"found", h.found}});
   j["hardware"] = hardware;

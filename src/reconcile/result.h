@@ -5,6 +5,7 @@
 
 #include "reconcile/dataset.h"
 #include "reconcile/fit.h"
+#include "reconcile/numerics.h"
 #include "reconcile/rules.h"
 #include "reconcile/screen.h"
 
@@ -88,6 +89,7 @@ struct Result {
   std::optional<NextExperiment> next;
   std::optional<Confirmation> confirmation;
   std::optional<Detection> detection;
+  Numerics numerics;                // solver error and sensitivities of the fit that the verdict rests on
   std::vector<Term> shape;          // of an unknown effect: residual = sum coefficient * term, in units of full scale
   std::vector<Term> residual_terms; // the same of the baseline's residual, whatever the verdict (for comparison, see baselines.py)
   double dispersion = 1.0, structure_before = 0.0, structure_after = 0.0;

@@ -299,7 +299,8 @@ std::vector<Fit> Search::other_forms(const Fit& winner, double tie) const {
 
 double Search::material(const Fit& f, const Fit& against) const {
   double most = 0.0;
-  const Rules& rules = options_.rules;
+  const double error = std::max(solver_error(fitter_, f).solver(), solver_error(fitter_, against).solver());
+  const double least = std::max(options_.rules.materiality, error), in_window = std::max(options_.rules.window_materiality, error);
   double common = 0.0;
   int used = 0;
   for (std::size_t i = 0; i < f.predicted.size(); ++i)
@@ -308,15 +309,15 @@ double Search::material(const Fit& f, const Fit& against) const {
     for (std::size_t c = 0; c < f.predicted[i].size(); ++c) {
       const Eigen::VectorXd change = (f.predicted[i][c] - against.predicted[i][c]) / fitter_.noise().output[c].full_scale;
       if (!change.allFinite()) continue;
-      most = std::max(most, std::sqrt(change.squaredNorm() / static_cast<double>(change.size())) / rules.materiality);
+      most = std::max(most, std::sqrt(change.squaredNorm() / static_cast<double>(change.size())) / least);
       // what one fit hides in the stiffness of single records counts as change, too
       const double hidden = std::abs(f.log_scale[i] - against.log_scale[i] - common / used), spread = (f.predicted[i][c].array() - f.predicted[i][c].mean()).matrix().norm();
       const double signal = std::max(spread, model_.data().rig == Rig::suture_pull ? f.predicted[i][c].norm() : 0.0) / std::sqrt(static_cast<double>(change.size()));
       const double gain = std::abs(f.log_gain[i] - against.log_gain[i]) * f.predicted[i][c].norm() / std::sqrt(static_cast<double>(change.size()));
-      most = std::max(most, (hidden * signal + gain) / fitter_.noise().output[c].full_scale / rules.materiality);
+      most = std::max(most, (hidden * signal + gain) / fitter_.noise().output[c].full_scale / least);
       const Eigen::Index w = std::max<Eigen::Index>(2, change.size() / 8);
       for (Eigen::Index k = 0; k + w <= change.size(); k += w)
-        most = std::max(most, std::sqrt(change.segment(k, w).squaredNorm() / static_cast<double>(w)) / rules.window_materiality);
+        most = std::max(most, std::sqrt(change.segment(k, w).squaredNorm() / static_cast<double>(w)) / in_window);
     }
   return most;
 }

@@ -2,6 +2,7 @@
 // Fits of effect sets: singles, then pairs and triples where they earn it, best first. Works on one Fitter; every fit is a full
 // simulation of all records that are not held out.
 
+#include "reconcile/numerics.h"
 #include "reconcile/result.h"
 #include "reconcile/structure.h"
 
@@ -28,7 +29,8 @@ class Search {
   double explained(const Fit& f) const;
   /// The same set with one effect in another of its forms, where the data do not tell the two apart (within `tie` of BIC).
   std::vector<Fit> other_forms(const Fit& winner, double tie) const;
-  /// Largest change of the prediction against another fit, over the rules' materiality (1: just material).
+  /// Largest change of the prediction against another fit, over what is material (1: just material): the rules' share of full scale, or what halving
+  /// time steps and cells changes in either fit where that is more.
   double material(const Fit& f, const Fit& against) const;
   /// What the residual holds beyond what replicates differ by.
   Structure structure(const Fit& f) const;

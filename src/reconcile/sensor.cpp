@@ -73,6 +73,15 @@ void apply_saturation(const Setting& s, Eigen::MatrixXd& out) {
 
 }  // namespace
 
+double WallTable::at(double c) const {
+  if (C.size() < 2) return 0.0;
+  if (c <= C[1]) return beyond[1] * c / C[1];
+  if (c >= C.back()) return beyond.back() * c / C.back();
+  const auto i = static_cast<std::size_t>(std::upper_bound(C.begin(), C.end(), c) - C.begin());
+  const double w = (c - C[i - 1]) / (C[i] - C[i - 1]);
+  return (1.0 - w) * beyond[i - 1] + w * beyond[i];
+}
+
 void RigModel::simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
   rig(t, s, out);
   sense(t, s, out);

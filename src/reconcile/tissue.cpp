@@ -197,13 +197,13 @@ void Tissue::elastic_history(const Trial& t, const Geometry& g, const Setting& s
 void Tissue::drain(const Trial& t, const Geometry& g, const Setting& s, Eigen::VectorXd& f) const {
   if (const double* p = s.on(Effect::viscoelastic_relaxation)) {
     const int kind = s.form(Effect::viscoelastic_relaxation);
-    relax(kind == 0 ? prony(p[0], p[1]) : kind == 1 ? prony(p[0], p[1], p[2], p[3]) : fractional(p[0], p[1], p[2]), t.time, f);
+    relax(kind == 0 ? prony(p[0], p[1]) : kind == 1 ? prony(p[0], p[1], p[2], p[3]) : fractional(p[0], p[1], p[2], s.mesh), t.time, f);
   }
   const double* p = s.on(Effect::poroelastic_drainage);
   if (p == nullptr || g.mode == Mode::shear) return;  // shear keeps the volume: nothing drains
   switch (s.form(Effect::poroelastic_drainage)) {
-    case 0: relax(radial_drainage(p[1], p[0], g.radius), t.time, f); break;
-    case 1: relax(slab_drainage(p[1], p[0], g.height), t.time, f); break;
+    case 0: relax(radial_drainage(p[1], p[0], g.radius, 12 * s.mesh), t.time, f); break;
+    case 1: relax(slab_drainage(p[1], p[0], g.height, 12 * s.mesh), t.time, f); break;
     // the slowest mode alone: a_1 = 2.405 of the cylinder, pi of the slab drained on both faces
     case 2: relax(prony(p[1], g.radius * g.radius / (5.783 * p[0])), t.time, f); break;
     default: relax(prony(p[1], g.height * g.height / (9.870 * p[0])), t.time, f); break;

@@ -22,6 +22,10 @@ constexpr int kPoints = 5;
 constexpr double kNode[kPoints] = {0.046910077, 0.230765345, 0.5, 0.769234655, 0.953089923};
 constexpr double kWeight[kPoints] = {0.118463443, 0.239314335, 0.284444444, 0.239314335, 0.118463443};
 
+/// Gauss's points of the wall cut in `mesh` rings.
+double place(int i, int mesh) { return (i / kPoints + kNode[i % kPoints]) / mesh; }
+double share(int i, int mesh) { return kWeight[i % kPoints] / mesh; }
+
 struct Wall {
   double a, b, lame, mu;  // lame = 1/a^2 - 1/b^2
 };
@@ -45,10 +49,14 @@ class Vessel final : public RigModel {
   std::vector<double> guess() const override;
   std::vector<Form> forms() const override;
   void rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const override;
+  double wall_pressure(const Trial& t, const Setting& s, double C) const override {
+    return extra(C, t.has("axial_stretch") ? t.at("axial_stretch").mean() : 1.0, wall_of(t, s), s);
+  }
 
  private:
   double extra(double C, double lz, const Wall& w, const Setting& s) const;
-  double sector(double C, double angle, const Wall& w) const;
+  Wall wall_of(const Trial& t, const Setting& s) const;
+  double sector(double C, double angle, int mesh, const Wall& w) const;
   /// extra() at one axial stretch, tabulated: cubic (Catmull-Rom) between 400 points.
   struct Table {
     double low = 0.0, step = 1.0;
@@ -63,17 +71,17 @@ class Vessel final : public RigModel {
 };
 
 /// Pressure that a neo-Hookean tube closed from a sector of this opening angle bears, less that of the one without.
-double Vessel::sector(double C, double angle, const Wall& w) const {
+double Vessel::sector(double C, double angle, int mesh, const Wall& w) const {
   const double k = 1.0 / (1.0 - angle / (2.0 * std::numbers::pi));  // r'^2 = r0^2 + (R^2 - R0^2)/k
   const auto pressure = [&](double K, double c, double R_in) {
     // reference radii R (open), deformed r of the wall at motion c
     double P = 0.0;
     const double ri = std::sqrt(w.a * w.a + 2.0 * c), ro = std::sqrt(w.b * w.b + 2.0 * c);
-    for (int i = 0; i < kPoints; ++i) {
-      const double r = ri + (ro - ri) * kNode[i];
+    for (int i = 0; i < mesh * kPoints; ++i) {
+      const double r = ri + (ro - ri) * place(i, mesh);
       const double R = std::sqrt(std::max(R_in * R_in + K * (r * r - ri * ri), 1e-30));
       const double l = r * K / R;
-      P += kWeight[i] * (ro - ri) * w.mu * (l * l - 1.0 / (l * l)) / r;
+      P += share(i, mesh) * (ro - ri) * w.mu * (l * l - 1.0 / (l * l)) / r;
     }
     return P;
   };
@@ -91,8 +99,8 @@ double Vessel::extra(double C, double lz, const Wall& w, const Setting& s) const
   double P = 0.0;
   if (fibre != nullptr || stiff != nullptr || tone != nullptr) {
     const double ri = std::sqrt(std::max(w.a * w.a + 2.0 * C, 1e-4 * w.a * w.a)), ro = std::sqrt(std::max(w.b * w.b + 2.0 * C, 1.1e-4 * w.b * w.b));
-    for (int i = 0; i < kPoints; ++i) {
-      const double r = ri + (ro - ri) * kNode[i];
+    for (int i = 0; i < s.mesh * kPoints; ++i) {
+      const double r = ri + (ro - ri) * place(i, s.mesh);
       const double l = r / std::sqrt(std::max(r * r - 2.0 * C, 1e-4 * w.a * w.a));
       double stress = 0.0;
       if (fibre != nullptr) {
@@ -111,12 +119,12 @@ double Vessel::extra(double C, double lz, const Wall& w, const Setting& s) const
         stress += tone[0] * (s.form(Effect::smooth_muscle_tone) == 0 ? std::max(0.0, 1.0 - x * x)
                                                                      : std::max(0.0, std::exp(-std::pow((l - tone[1]) / 0.15, 2)) - std::exp(-std::pow((1.0 - tone[1]) / 0.15, 2))));
       }
-      P += kWeight[i] * (ro - ri) * stress / r;
+      P += share(i, s.mesh) * (ro - ri) * stress / r;
     }
   }
   if (const double* p = s.on(Effect::perivascular_tethering)) P += p[0] * C / w.b;
-  if (const double* p = s.on(Effect::residual_stress)) P += sector(C, p[0], w);
-  return P;
+  if (const double* p = s.on(Effect::residual_stress)) P += sector(C, p[0], s.mesh, w);
+  return P + (s.wall != nullptr ? s.wall->at(C) : 0.0);
 }
 
 double Vessel::Table::operator()(double C) const {
@@ -127,11 +135,11 @@ double Vessel::Table::operator()(double C) const {
 }
 
 Vessel::Table Vessel::tabulate(double lz, double least, double most, const Wall& w, const Setting& s) const {
-  constexpr int kTable = 400;
+  const int points = 400 * s.mesh;
   Table t;
-  t.step = (most - least) / (kTable - 7);
+  t.step = (most - least) / (points - 7);
   t.low = least - 3 * t.step;
-  for (int i = 0; i < kTable; ++i) t.value.push_back(extra(t.low + i * t.step, lz, w, s));
+  for (int i = 0; i < points; ++i) t.value.push_back(extra(t.low + i * t.step, lz, w, s));
   return t;
 }
 
@@ -152,12 +160,17 @@ double Vessel::solve(double P, double start, double softened, const Wall& w, con
   return C;
 }
 
-void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
+Wall Vessel::wall_of(const Trial& t, const Setting& s) const {
   Wall w{};
   w.b = 0.5 * t.size("outer_diameter");
   w.a = w.b - t.size("wall_thickness");
-  w.lame = 1.0 / (w.a * w.a) - 1.0 / (w.b * w.b);
+  w.lame = (1.0 / (w.a * w.a) - 1.0 / (w.b * w.b)) * (s.wall != nullptr ? s.wall->linear : 1.0);
   w.mu = s.base[0] * s.scale / 3.0;
+  return w;
+}
+
+void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
+  const Wall w = wall_of(t, s);
   Eigen::VectorXd P = t.at("pressure");
   if (const double* p = s.on(Effect::viscoelastic_relaxation)) {
     const int kind = s.form(Effect::viscoelastic_relaxation);
@@ -165,7 +178,7 @@ void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
   }
   const double* soft = s.on(Effect::first_cycle_softening);
   const bool plain = soft == nullptr && s.on(Effect::fibre_stiffening) == nullptr && s.on(Effect::strain_stiffening) == nullptr &&
-                     s.on(Effect::smooth_muscle_tone) == nullptr && s.on(Effect::perivascular_tethering) == nullptr && s.on(Effect::residual_stress) == nullptr;
+                     s.on(Effect::smooth_muscle_tone) == nullptr && s.on(Effect::perivascular_tethering) == nullptr && s.on(Effect::residual_stress) == nullptr && (s.wall == nullptr || s.wall->C.empty());
   out.resize(t.samples(), static_cast<Eigen::Index>(data().outputs.size()));
   double C = 0.0, top = 0.0;
   // an elastic term bears pressure at every C > 0, so the linear wall alone bounds C from above (softening by its factor)

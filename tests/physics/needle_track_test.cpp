@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "evidence/track_rig.h"
+#include "physics/track_rig.h"
 
 namespace filum {
 namespace {

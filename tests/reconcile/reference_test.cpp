@@ -47,9 +47,21 @@ TEST(Reference, LoadBorneByFluidDecaysAsTerzaghiSays) {
 
 TEST(Reference, WeaklyLoadedElasticaIsABeam) {
   double drop = 0, reach = 0;
-  ASSERT_EQ(filum_reference_elastica(0.03, 1e-9, 1e-6, 0.0, &drop, &reach), 0);
+  ASSERT_EQ(filum_reference_elastica(0.03, 1e-9, 1e-6, 0.0, 0.0, &drop, &reach), 0);
   EXPECT_NEAR(drop / (1e-6 * std::pow(0.03, 4) / 8e-9), 1.0, 1e-4);
   EXPECT_NEAR(reach, 0.03, 1e-6);
+}
+
+TEST(Reference, ThreadWithoutWeightIsItsNaturalShape) {
+  // curvature k (1 - b s/L): theta = k L (x - b x^2/2), drop = L int sin theta
+  const double L = 0.02, k = 40.0, taper = 0.5;
+  double drop = 0, reach = 0, exact = 0;
+  ASSERT_EQ(filum_reference_elastica(L, 1e-9, 1e-15, k, taper, &drop, &reach), 0);
+  for (int i = 0; i < 2000; ++i) {
+    const double x = (i + 0.5) / 2000;
+    exact += L / 2000 * std::sin(k * L * (x - 0.5 * taper * x * x));
+  }
+  EXPECT_NEAR(drop / exact, 1.0, 1e-5);
 }
 
 TEST(Reference, ProgramsRelaxationSolvesTheSameEquation) {

@@ -119,23 +119,24 @@ def softening(e, d, w0):
     return 1 - d * x / (1 + x) * 1.3 if d < 0.7 else 1 - d * x / (1 + x)
 
 
-def elastica(L, B, w, kappa0, rest=None):
-    """Heavy elastica, clamped level, by collocation-free shooting with an adaptive integrator. Returns drop, reach."""
+def elastica(L, B, w, kappa0, taper=0.0):
+    """Heavy elastica, clamped level, by collocation-free shooting with an adaptive integrator. The rest curvature falls evenly from kappa0 at the
+    clamp by the share `taper`. Returns drop, reach."""
     if CVODE:
         drop, reach = ctypes.c_double(), ctypes.c_double()
-        status = CVODE.filum_reference_elastica(*(ctypes.c_double(float(v)) for v in (L, B, w, kappa0)), ctypes.byref(drop), ctypes.byref(reach))
+        status = CVODE.filum_reference_elastica(*(ctypes.c_double(float(v)) for v in (L, B, w, kappa0, taper)), ctypes.byref(drop), ctypes.byref(reach))
         if status < 0:
             raise ArithmeticError(f'elastica: {status}')
         return drop.value, reach.value
 
     def ode(s, y):
         th, k = y[0], y[1]
-        return [k, -w * (L - s) / B * np.cos(th) * 1.0, np.cos(th), np.sin(th)]
+        return [k, -w * (L - s) / B * np.cos(th) - kappa0 * taper / L, np.cos(th), np.sin(th)]
     lo, hi = -40.0 / L, 40.0 / L
 
     def end(k_clamp):
         sol = solve_ivp(ode, (0, L), [0, k_clamp, 0, 0], rtol=1e-7, atol=1e-10)
-        return sol.y[1, -1] - kappa0, sol.y[2, -1], sol.y[3, -1]
+        return sol.y[1, -1] - kappa0 * (1 - taper), sol.y[2, -1], sol.y[3, -1]
     a = kappa0 + w * L * L / (2 * B) / (1 + (w * L ** 3 / (8 * B)) ** 0.7)
     b = a * 1.05 + 1e-3 / L
     fa, fb = end(a), end(b)

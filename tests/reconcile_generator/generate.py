@@ -79,7 +79,9 @@ def build(cls, kind, seed):
     if kind == 'unidentifiable' and cls is Tissue:
         rig.two, rig.shear, rig.free = False, False, ['youngs_modulus']
         rig.protocols = lambda: [('compression', 1.0, 1.0), ('compression', 3.0, 1.0)]
-    fx = {n: rig.draw(n, rng.uniform(0.1, 1.0)) for n in names}
+    # half of the single effects are to be hard to see: weak ones, in as much noise as brings them to a signal to noise ratio of 4-8
+    faint = rng.uniform(4, 8) if kind == 'single' and cls is not Hold and rng.random() < 0.5 else 0.0
+    fx = {n: rig.draw(n, rng.uniform(-0.1, 0.4) if faint else rng.uniform(0.1, 1.0)) for n in names}
     scatter = 0.0 if cls in (Forceps, Hold) else rng.choice([0.0, 0.05, 0.08])
     replicates = int(rng.integers(2, 4))
     if cls is Cantilever:
@@ -93,7 +95,6 @@ def build(cls, kind, seed):
         level = np.exp(rng.uniform(np.log(0.005), np.log(0.05 if kind in ('single', 'double', 'outside') else 0.1)))
         sigma = {c: level * full[c] for c in outputs}
         rho, white = rng.choice([0.0, 0.3, 0.6, 0.85]), rng.choice([0.0, 0.5])
-    faint = rng.uniform(4, 8) if kind == 'single' and cls is not Hold and rng.random() < 0.25 else 0.0
     snr, worst, rival = 0.0, 0.0, (np.inf, '')
     if names:
         low = (1 - white) * (1 + rho) / (1 - rho) + white  # of slow noise; a line stands in faster, quieter bands

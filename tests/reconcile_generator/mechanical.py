@@ -338,8 +338,9 @@ class Cantilever:
         shape = np.empty((len(idx), 2))
         most = 0.0
         for k, i in enumerate(idx):
-            own = fx['permanent-set']['fraction'] * most if 'permanent-set' in fx else 0.0  # one curvature for the whole length
-            shape[k] = np.array(F.elastica(L[i], B / J[i], w, k0 + own)) / L[i]
+            own = fx['permanent-set']['fraction'] * most if 'permanent-set' in fx else 0.0  # of the largest past curvature, less towards the tip
+            taper = fx['permanent-set']['taper'] * own / (k0 + own) if own else 0.0
+            shape[k] = np.array(F.elastica(L[i], B / J[i], w, k0 + own, taper)) / L[i]
             most = max(most, w * L[i] ** 2 / (2 * B / J[i]) * np.sqrt(max(0.0, 1 - shape[k, 0] ** 2)))
         from scipy.interpolate import PchipInterpolator
         curve = PchipInterpolator(t[idx], shape)(t) if kind == 'steps' or 'bending-creep' in fx or 'permanent-set' in fx else np.repeat(shape[:1], len(t), 0)
@@ -358,7 +359,7 @@ class Cantilever:
         return {
             'rest-curvature': lambda: {'curvature': (0.15 + 0.5 * s) / self.L},
             'bending-creep': lambda: {'a': 0.04 + 0.12 * s, 't0': r.uniform(5, 60)},
-            'permanent-set': lambda: {'fraction': 0.08 + 0.3 * s},
+            'permanent-set': lambda: {'fraction': 0.08 + 0.3 * s, 'taper': r.uniform(0.2, 0.8)},
             'sensor-drift': lambda: {'size': self.L * 0.5 * (0.06 + 0.15 * s), 'log': r.random() < 0.3},
             'saturation': lambda: {'share': 0.85 - 0.3 * s},
             'offset-step': lambda: {'size': 0.06 + 0.15 * s},

@@ -98,7 +98,7 @@ class State:
 
 
 def values(fx, effect):
-    return [(effect, q) for q, v in fx[effect].items() if isinstance(v, float) and v and q not in ('beta', 'power', 'breath', 'width' if effect == 'physiological-tremor' else '')]
+    return [(effect, q) for q, v in fx[effect].items() if isinstance(v, float) and v and q not in ('beta', 'power', 'breath', 'taper', 'width' if effect == 'physiological-tremor' else '')]
 
 
 def signal_to_noise(truth):

@@ -160,18 +160,18 @@ int filum_reference_consolidation(int n, const double* t, const double* f, doubl
   return 0;
 }
 
-int filum_reference_elastica(double L, double B, double w, double curvature, double* drop, double* reach) {
-  // in arc lengths of L: theta'' = -G (1 - s) cos theta, G = w L^3/B
-  const double G = w * L * L * L / B;
+int filum_reference_elastica(double L, double B, double w, double curvature, double taper, double* drop, double* reach) {
+  // in arc lengths of L: theta'' = -G (1 - s) cos theta + d/ds of the rest curvature, G = w L^3/B
+  const double G = w * L * L * L / B, fall = curvature * L * taper;
   const auto shoot = [&](double clamp, double* end) {
-    Integrator integrator({0.0, clamp, 0.0, 0.0}, 0.0, 3, 1.0, [G](double s, const double* y, double* dy) {
-      dy[0] = y[1], dy[1] = -G * (1.0 - s) * std::cos(y[0]), dy[2] = std::cos(y[0]), dy[3] = std::sin(y[0]);
+    Integrator integrator({0.0, clamp, 0.0, 0.0}, 0.0, 3, 1.0, [G, fall](double s, const double* y, double* dy) {
+      dy[0] = y[1], dy[1] = -G * (1.0 - s) * std::cos(y[0]) - fall, dy[2] = std::cos(y[0]), dy[3] = std::sin(y[0]);
     });
     const int status = integrator.to(1.0, 1.0, false);
     std::copy(integrator.state(), integrator.state() + 4, end);
     return status;
   };
-  const double wanted = curvature * L;
+  const double wanted = curvature * L - fall;
   double a = wanted + 0.5 * G / (1.0 + std::pow(G / 8.0, 0.7)), b = 1.05 * a + 1e-3, ea[4], eb[4];
   if (const int status = shoot(a, ea); status < 0) return status;
   if (const int status = shoot(b, eb); status < 0) return status;

@@ -11,6 +11,7 @@ int filum_reference_bouc_wen(int n, const double* x, double width, double* out);
 /// A share of f is borne by a fluid that drains: p' = D lap p + share f', p = 0 at the drained face at `size`, cells of finite volume, plane
 /// or radial; out = (1 - share) f + the mean of p.
 int filum_reference_consolidation(int n, const double* t, const double* f, double share, double D, double size, int radial, double* out);
-/// Heavy elastica clamped level: B theta'' = -w (L - s) cos theta, theta(0) = 0, theta'(L) = rest curvature; by shooting.
-int filum_reference_elastica(double L, double B, double w, double curvature, double* drop, double* reach);
+/// Heavy elastica clamped level: B theta'' = -w (L - s) cos theta + B k0'(s), theta(0) = 0, theta'(L) the rest curvature there, which falls evenly from
+/// `curvature` at the clamp by the share `taper`; by shooting.
+int filum_reference_elastica(double L, double B, double w, double curvature, double taper, double* drop, double* reach);
 }

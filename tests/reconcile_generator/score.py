@@ -36,9 +36,15 @@ def median(v):
 of = lambda *kinds: [(n, l, r) for n, l, r in rows if l['kind'] in kinds]
 single = of('single')
 right = lambda l, r: r['verdict'] == 'effect' and named(r) == set(l['effects'])
+# a single effect can be named where the oracle finds every rival at 4 standard deviations or more (discovery.md 4.5); nearer ones belong in a set
+told = lambda l: l['distance'] is None or l['distance'] >= 4
 print('sets', len(rows))
 print('single, right name, SNR >= 8  ', share(right(l, r) for _, l, r in single if l['snr'] >= 8))
 print('single, right name, SNR 4-8   ', share(right(l, r) for _, l, r in single if 4 <= l['snr'] < 8))
+clear = [(n, l, r) for n, l, r in single if told(l)]
+print('  of these every rival at 4 sd or more, SNR >= 8', share(right(l, r) for _, l, r in clear if l['snr'] >= 8), ' SNR 4-8', share(right(l, r) for _, l, r in clear if 4 <= l['snr'] < 8))
+near = [(l, r) for _, l, r in single if not told(l)]
+print('  a rival nearer: set or name holds the truth', share(set(l['effects']) in rivals(r) for l, r in near if rivals(r)), ' nothing said', share(not rivals(r) for _, r in near))
 one = [(l, r) for _, l, r in rows if r['verdict'] == 'effect' and len(named(r)) == 1]
 print('one name given is right       ', share(bool(named(r) & set(l['effects'])) for l, r in one if l['kind'] != 'outside'))
 print('   the same, outside counted as wrong unless partial', share(bool(named(r) & set(l['effects'])) or (l['kind'] == 'outside' and r['partial']) for l, r in one))

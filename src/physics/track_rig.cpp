@@ -1,5 +1,6 @@
-#include "evidence/track_rig.h"
+#include "physics/track_rig.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -33,7 +34,7 @@ TrackMaterial plain_track(double puncture, double cutting, double friction, doub
 TrackRig::TrackRig(const RigOptions& o) : options_(o) {
   WallOptions w;
   w.dt = o.dt;
-  wall_ = std::make_unique<VesselWall>(block(o), std::vector<WallLayer>{{"block", o.thickness, WallLaw::hooke(o.young, 0.3)}}, w);
+  wall_ = std::make_unique<VesselWall>(block(o), o.layers.empty() ? std::vector<WallLayer>{{"block", o.thickness, WallLaw::hooke(o.young, 0.3)}} : o.layers, w);
   wall_state_ = wall_->first_state();
   wall_->refit(wall_state_);
   shape_.bend_radius = o.bend_radius;
@@ -95,6 +96,11 @@ RigSample TrackRig::step(double move, double sideways) {
 double TrackRig::inserted() const {
   if (state_.n == 0 || state_.tracks[0].n == 0) return 0.0;
   return shape_.length() - state_.tracks[0].knots[0].strand;
+}
+
+double TrackRig::ahead() const {
+  if (state_.n == 0 || state_.tracks[0].n == 0) return 0.0;
+  return std::max(0.0, shape_.length() - state_.tracks[0].knots[static_cast<std::size_t>(state_.tracks[0].n - 1)].strand);
 }
 
 double TrackRig::stored() const {

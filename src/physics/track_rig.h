@@ -16,6 +16,7 @@ struct RigOptions {
   double grip = 20.0;             // [N]
   double dt = 2e-3;               // [s]
   TrackMaterial track;
+  std::vector<WallLayer> layers;  // inner first; empty: one of the whole thickness
 };
 
 /// Records of one step.
@@ -36,6 +37,7 @@ class TrackRig {
   double work() const { return work_; }        // [J], by the vice
   double stored() const;                       // [J], in the holds of needle and tissue
   double inserted() const;                     // [m], length of needle beyond the entry
+  double ahead() const;                        // [m], of it beyond the last knot
   const char* last_event() const { return last_event_; }
   double event_force() const { return event_force_; }  // [N], of the last event
 
