@@ -43,7 +43,8 @@ ImplicitRod::ImplicitRod(const RodMaterial& m, const ContactMaterial& c, int cap
     : material(m), contact_material(c), boundary(capacity), obstacles(8 * capacity), grasps(n_tools), tethers(kMostTethers),
       contact_(capacity, 16 * capacity), geometry_(capacity), matrix_(capacity), x_(Points::Zero(3, capacity)), x_trial_(x_),
       theta_(Eigen::VectorXd::Zero(capacity)), theta_trial_(theta_), gradient_(Eigen::Matrix4Xd::Zero(4, capacity)),
-      move_(gradient_), boundary_move_(gradient_), stiffened_(m), rest_kappa_(Eigen::Matrix4Xd::Zero(4, capacity)), rest_twist_(theta_) {
+      move_(gradient_), boundary_move_(gradient_), lengths_(capacity),
+      inverse_mass_(theta_), stiffened_(m), rest_kappa_(Eigen::Matrix4Xd::Zero(4, capacity)), rest_twist_(theta_) {
   chain_.next.resize(static_cast<std::size_t>(capacity));
   chain_.second.resize(static_cast<std::size_t>(capacity));
 }
@@ -132,9 +133,9 @@ void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodS
   for (int i = 0; i < s.n; ++i)
     for (int c = 0; c < 4; ++c)
       if (boundary.held(c, i)) move_(c, i) = 0.0;
-  const double length = largest_move(move_, s.n);
-  if (length == 0.0) return;
-  double fraction = free_fraction(s, memory, length);
+  if (largest_move(move_, s.n) == 0.0) return;
+  keep_lengths(s, EdgeLength::unchanged);
+  double fraction = free_fraction(s, memory, largest_move(move_, s.n));
   fit_geometry(s);
   const double before = energy(s, x_, theta_, o, 0.0);
   for (int k = 0; k < 2; ++k, fraction *= 0.5) {
@@ -310,8 +311,27 @@ bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffnes
     const double length = largest_move(move_, s.n);
     if (length > o.longest_move && kind == Stiffness::exact) continue;
     if (length > o.longest_move) move_.leftCols(s.n) *= o.longest_move / length;
+    slope_ = (gradient_.leftCols(s.n).array() * move_.leftCols(s.n).array()).sum();
+    keep_lengths(s, EdgeLength::first_order);
     return true;
   }
+}
+
+bool ImplicitRod::touches_nothing() const noexcept {
+  const auto pressed = [](const auto& touch) { return touch.force > 0.0; };
+  return grasps.held().empty() && tethers.list.empty() &&
+         std::none_of(obstacles.touches().begin(), obstacles.touches().end(), pressed) &&
+         !(self_contact && std::any_of(contact_.pairs().begin(), contact_.pairs().end(), pressed));
+}
+
+/// Takes the second-order stretch out of move_, where nothing touches the thread: strands that press on one another would be pushed into each
+/// other by a correction that knows of masses only.
+void ImplicitRod::keep_lengths(const RodState& s, EdgeLength which) noexcept {
+  if (!touches_nothing()) return;
+  const StageScope stage("lengths");
+  for (int i = 0; i < s.n; ++i)
+    inverse_mass_[i] = boundary.held.col(i).head<3>().any() ? 0.0 : 1.0 / (material.mass_per_length() * node_span(s, i));
+  lengths_.keep(s, x_, inverse_mass_, which, move_);
 }
 
 /// Newton step; where the exact stiffness leads nowhere, that of Gauss and Newton is tried before a last small move.
@@ -332,14 +352,13 @@ bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const 
 /// A move is taken if the sum falls below what it was at this iterate or at the one before (Grippo, Lampariello, Lucidi, SIAM J. Numer. Anal. 23:707,
 /// 1986, with a memory of two): the first step into a new contact, whose stiffness is not in the matrix yet, need not be cut to nothing.
 bool ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
-  const double slope = (gradient_.leftCols(s.n).array() * move_.leftCols(s.n).array()).sum();
-  if (!(slope < 0.0)) return false;
+  if (!(slope_ < 0.0)) return false;
   double fraction = free_fraction(s, memory, largest_move(move_, s.n));
   fit_geometry(s);
   const double before = energy(s, x_, theta_, o, 0.0), highest = std::max(before, last_energy_);
   last_energy_ = before;
   for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5)
-    if (try_move(s, fraction, highest + 1e-4 * fraction * slope, o)) return true;
+    if (try_move(s, fraction, highest + 1e-4 * fraction * slope_, o)) return true;
   return false;
 }
 

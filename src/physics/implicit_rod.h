@@ -14,6 +14,7 @@
 
 #include "physics/elastic_rod.h"
 #include "physics/rod_contact.h"
+#include "physics/rod_lengths.h"
 #include "physics/rod_obstacle.h"
 #include "physics/rod_tether.h"
 #include "physics/thread_grasp.h"
@@ -87,6 +88,8 @@ class ImplicitRod {
   void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
   double force_scale(const RodState& s) const noexcept;
   bool direction(const RodState& s, const RodStepOptions& o, Stiffness& kind) noexcept;
+  bool touches_nothing() const noexcept;
+  void keep_lengths(const RodState& s, EdgeLength which) noexcept;
   bool newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   void predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   double free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept;
@@ -105,11 +108,14 @@ class ImplicitRod {
   Points x_, x_trial_;
   Eigen::VectorXd theta_, theta_trial_;
   Eigen::Matrix4Xd gradient_, move_, boundary_move_;
+  RodLengths lengths_;
+  Eigen::VectorXd inverse_mass_;           // [1/kg], of nodes; 0 where held
   RodMaterial stiffened_;                  // the material with what internal friction adds in this step
   Eigen::Matrix4Xd rest_kappa_;            // rest shape proper, while the step works with the softened one
   Eigen::VectorXd rest_twist_;
   double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
   double travelled_ = 0.0;
+  double slope_ = 0.0;          // [J], of the sum along the Newton direction
   double last_energy_ = 0.0;    // [J], at the iterate before, with the loads of then
   bool geometry_fits_ = false;  // geometry_ is that of x_ and theta_
 };

@@ -62,13 +62,17 @@ std::vector<CameraGuide::Wish> CameraGuide::wishes() const {
   const std::vector<bool> seen = cells();
   for (std::size_t k = 0; k < kNinths.size(); ++k)
     list.push_back({std::string("the board in the ") + kNinths[k] + " of the picture", covered_in(seen, k) >= kCellsOfNinth});
-  const auto any = [&](auto&& holds) { return std::any_of(views_.begin(), views_.end(), holds); };
-  list.push_back({"its right edge tilted away from the camera", any([](const BoardSight& v) { return v.tilt_x > kTilted; })});
-  list.push_back({"its left edge tilted away from the camera", any([](const BoardSight& v) { return v.tilt_x < -kTilted; })});
-  list.push_back({"its upper edge tilted away from the camera", any([](const BoardSight& v) { return v.tilt_y > kTilted; })});
-  list.push_back({"its lower edge tilted away from the camera", any([](const BoardSight& v) { return v.tilt_y < -kTilted; })});
-  list.push_back({"the board near, half as wide as the picture", any([](const BoardSight& v) { return v.size > kNear; })});
-  list.push_back({"the board far, less than a third as wide as the picture", any([](const BoardSight& v) { return v.size < kFar; })});
+  const auto wish = [&](const char* what, auto&& grants) {
+    Wish& w = list.emplace_back();
+    w.what = what;
+    w.granted = std::any_of(views_.begin(), views_.end(), grants);
+  };
+  wish("its right edge tilted away from the camera", [](const BoardSight& v) { return v.tilt_x > kTilted; });
+  wish("its left edge tilted away from the camera", [](const BoardSight& v) { return v.tilt_x < -kTilted; });
+  wish("its upper edge tilted away from the camera", [](const BoardSight& v) { return v.tilt_y > kTilted; });
+  wish("its lower edge tilted away from the camera", [](const BoardSight& v) { return v.tilt_y < -kTilted; });
+  wish("the board near, half as wide as the picture", [](const BoardSight& v) { return v.size > kNear; });
+  wish("the board far, less than a third as wide as the picture", [](const BoardSight& v) { return v.size < kFar; });
   return list;
 }
 
