@@ -9,6 +9,7 @@ namespace filum {
 namespace {
 
 constexpr double kPointGrip = 1.0;  // [-], friction of the point where it rests: it digs in
+constexpr double kBack = 0.1e-6;      // [m], by which the point must leave the next layer to be off it: less is the wall's own trembling
 constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind a knot to have left it
 
 double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
@@ -300,7 +301,7 @@ void NeedleTracks::advance(const VesselWall& wall, const WallState& w, TrackStat
 
 void NeedleTracks::break_through(const VesselWall& wall, const WallState&, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept {
   const double push = -t.force.dot(along);
-  if (push < 0.0 || t.start < 0.0) {
+  if (std::min(push / material_.point_stiffness, t.start) < -kBack) {
     s.point.kind = PointContact::Kind::within;
     return;
   }
