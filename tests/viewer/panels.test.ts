@@ -1,6 +1,6 @@
 import { clock, milliNewton, quantity } from "@viewer/ui/format";
 import { barScale, ForcePanel, StepPanel, tensionZone, WarningList } from "@viewer/ui/panels";
-import { knotPicture, kThrows, strands } from "@viewer/ui/pictures";
+import { knotPicture, kThrows, strands, taskPicture } from "@viewer/ui/pictures";
 import { chartsOf } from "@viewer/ui/plots";
 import { kShortcuts } from "@viewer/input/shortcuts";
 import type { Frame, Scene } from "@viewer/messages";
@@ -107,4 +107,11 @@ it("no key is listed twice for the same place", () => {
     const keys = group.shortcuts.map((one) => one.keys);
     expect(new Set(keys).size).toBe(keys.length);
   }
+});
+
+it("tasks that differ in what is done have pictures that differ", () => {
+  const tasks = ["artery-stitch", "vessel-stitch", "stitch-throw", "stitch-knot", "card-stitches", "ten-stitches", "needle-course", "needle-loading", "grasp-transfer", "tip-hold", "trace",
+    "press-to-target", "sylvian-opening", "knot-throw", "knot-square", "knot-surgeons"];
+  const drawn = tasks.map((task) => taskPicture(task, "").outerHTML.replace(/field\d+/g, ""));
+  expect(new Set(drawn).size).toBe(tasks.length);
 });

@@ -127,9 +127,56 @@ function brainPicture(label: string, blades: number): SVGElement {
 
 const kBlades: Record<string, number> = { "press-to-target": 1, "hold-exposure": 1, "deep-exposure": 1, "retractor-correction": 1, "sylvian-opening": 2 };
 
+const kThread = `fill="none" stroke="#12324a" stroke-width="2.6" stroke-linecap="round"`;
+
+/// The needle's arc with its point, about (x, y), turned by `turn` degrees.
+const needle = (x: number, y: number, turn: number, size = 1): string =>
+  `<g transform="translate(${x} ${y}) rotate(${turn}) scale(${size})"><path d="M-17 0A17 17 0 0 1 17 0" fill="none" stroke="#2b333b" stroke-width="4.2"/><path d="M-17 0A17 17 0 0 1 17 0" fill="none" stroke="#dfe5ea" stroke-width="2.8"/><path d="M15.4 0L17 8L18.6 0Z" fill="#dfe5ea"/></g>`;
+
+/// Two stumps in their clamps with a stitch across the gap; `turns`: of the thread in its knot, so far.
+function vesselPicture(label: string, colour: string, turns: number): SVGElement {
+  const stump = (end: number) => `<g transform="scale(${end} 1)"><rect x="5" y="-17" width="60" height="34" fill="${colour}" stroke="#5b3a34" stroke-width=".8"/><rect x="5" y="-15" width="60" height="7" fill="#ffffff48"/>
+    <ellipse cx="5" rx="4.5" ry="17" fill="#7c3b36" stroke="${colour}" stroke-width="2.4"/><path d="M40 -23H46V23H40Z" fill="#METAL" stroke="#2b333b" stroke-width=".6"/></g>`;
+  const knot = Array.from({ length: turns }, (_, k) => `<ellipse cx="0" cy="${-4 * k}" rx="6" ry="3.4" ${kThread}/>`).join("");
+  const thread = turns > 0 ? `<path d="M-15 0H15" ${kThread}/>${knot}<path d="M-4 ${-4 * turns}C-14 -26 -22 -34 -30 -44M4 ${-4 * turns}C12 -24 20 -34 30 -42" ${kThread}/>`
+    : `<path d="M-24 -4C-34 -22 -26 -38 -12 -44M-24 -4H16C24 -4 26 -20 26 -26" ${kThread}/>${needle(30, -30, 60, 0.8)}`;
+  return field(stump(-1) + stump(1) + thread, label);
+}
+
+/// A latex card: a cut with `stitches` across it, or without a cut and with marks round the clock.
+function cardPicture(label: string, stitches: number): SVGElement {
+  const across = Array.from({ length: stitches }, (_, k) => `<path d="M-9 ${(80 * (k + 0.5)) / stitches - 40}h18" ${kThread}/>`).join("");
+  const marks = Array.from({ length: 12 }, (_, k) => `<g transform="rotate(${30 * k})"><path d="M0 -38V-24" stroke="#7a5b12" stroke-width="1.6" stroke-dasharray="2 2"/><circle cy="-38" r="2" fill="#12324a"/><circle cy="-24" r="2" fill="#12324a"/></g>`).join("");
+  return field(`<rect x="-46" y="-46" width="92" height="92" rx="3" fill="#e5c96e" stroke="#8a7331" stroke-width=".8"/>` +
+    (stitches > 0 ? `<path d="M0 -43V43" stroke="#6b5418" stroke-width="3"/>${across}` : marks + needle(0, 4, 0, 0.8)), label);
+}
+
+/// Jaws above small objects on the sheet, or above a mark to hold the tip at.
+function tipPicture(label: string, objects: boolean): SVGElement {
+  const below = objects ? `<circle cx="-24" cy="22" r="9" fill="#POST" stroke="#6d5a46"/><circle cx="2" cy="26" r="9" fill="#POST" stroke="#6d5a46"/><circle cx="28" cy="20" r="9" fill="#POST" stroke="#6d5a46"/>`
+    : `<circle cy="18" r="14" fill="none" stroke="#12324a" stroke-width="2"/><circle cy="18" r="2.4" fill="#12324a"/>`;
+  const x = objects ? 2 : 0, y = objects ? 18 : 16;
+  return field(`${below}<g stroke="#2b333b" stroke-width=".6"><path d="M${x - 2} ${y}L${x - 16} -62H${x - 4}Z" fill="#METAL"/><path d="M${x + 2} ${y}L${x + 16} -62H${x + 4}Z" fill="#METAL"/></g>`, label);
+}
+
+const kScenes: Record<string, (title: string) => SVGElement> = {
+  "knot-throw": (title) => knotPicture("overhand", title, true),
+  "artery-stitch": (title) => vesselPicture(title, "#cf8378", 0),
+  "vessel-stitch": (title) => vesselPicture(title, "#dcc8b6", 0),
+  "stitch-throw": (title) => vesselPicture(title, "#dcc8b6", 1),
+  "stitch-knot": (title) => vesselPicture(title, "#dcc8b6", 3),
+  "card-stitches": (title) => cardPicture(title, 2),
+  "ten-stitches": (title) => cardPicture(title, 10),
+  "needle-course": (title) => cardPicture(title, 0),
+  "needle-loading": (title) => field(needle(0, 8, -20, 1.9), title),
+  "grasp-transfer": (title) => tipPicture(title, true),
+  "tip-hold": (title) => tipPicture(title, false),
+};
+
 /// Picture of a task by the name that the trainer gives.
 export function taskPicture(name: string, title: string): SVGElement {
   if (kBlades[name]) return brainPicture(title, kBlades[name]);
+  if (kScenes[name]) return kScenes[name](title);
   const knot = /^knot-(.+)$/.exec(name)?.[1];
   if (knot && kThrows[knot]) return knotPicture(knot, title, true);
   return knotPicture("", title, false);
