@@ -94,7 +94,9 @@ bool confirm(const Search& search, const Fit& winner, const Options& options, Re
   // what the solver's own mesh could account for is not worth a name
   const double floor = std::max(1.0, c.mesh / options.rules.materiality);
   c.material = search.material(full.fit, base.fit);
-  c.holds = c.evidence < -options.rules.accept_evidence && c.share >= options.rules.explained && c.material >= floor;
+  // a name that was taken by its chance (decide.cpp) has less evidence in either model: its share is what is asked
+  const bool by_chance = search.bic(winner) - search.bic(search.base()) > -options.rules.accept_evidence;
+  c.holds = (by_chance || c.evidence < -options.rules.accept_evidence) && c.share >= options.rules.explained && c.material >= floor;
   c.values = effect_estimates(fitter, full.fit, search.dispersion());
   return c.holds;
 }

@@ -169,8 +169,23 @@ double where_silent(const Search& search, const Fit& smaller, const Fit& larger,
   return gain * search.dispersion() / std::max(smaller.chi2 - larger.chi2, 1e-300);
 }
 
+/// Chance that in a set where nothing is missing some effect does as well as this one: its score test (and no more than its fit bore out) among the
+/// best ones of the repetitions, so that the number of effects, forms and starting points looked at is paid for.
+double chance(const Search& search, const Fit& single, const Detection& detection, const std::vector<Score>& scores) {
+  if (single.forms[0]->line) return search.line_p(*single.forms[0], search.base());
+  double gain = 0.0;
+  for (const Score& s : scores)
+    if (s.form->effect == single.forms[0]->effect) gain = std::max(gain, s.gain);
+  gain = std::min(gain, search.base().chi2 - single.chi2) / search.dispersion();
+  const auto& null = detection.null_scores;
+  const auto above = null.end() - std::lower_bound(null.begin(), null.end(), gain);
+  return (1.0 + static_cast<double>(above)) / (1.0 + static_cast<double>(null.size()));
+}
+
 /// The smallest set that the next larger one does not beat.
-const Fit* choose(const Search& search, const Rules& rules) {
+const Fit* choose(const Search& search, const Rules& rules, Detection& detection) {
+  const Fit* first = search.best(1);
+  if (first != nullptr) detection.chance = chance(search, *first, detection, Screen(search.fitter(), search.base()).all(search.forms()));
   const Fit* now = nullptr;
   for (std::size_t size = 1; size <= static_cast<std::size_t>(rules.most_effects); ++size) {
     const Fit* next = search.best(size);
@@ -178,7 +193,9 @@ const Fit* choose(const Search& search, const Rules& rules) {
     const Fit& before = now == nullptr ? search.base() : *now;
     const double fall = search.bic(before) - search.bic(*next);
     const double needed = now == nullptr ? rules.accept_evidence : rules.pair_evidence;
-    const bool enough = fall >= needed && (now != nullptr || (before.chi2 - next->chi2) / search.dispersion() >= rules.detect);
+    bool enough = fall >= needed && (now != nullptr || (before.chi2 - next->chi2) / search.dispersion() >= rules.detect);
+    // an instant read off the record is chosen among all: repetitions with the same instants do not know that
+    if (size == 1 && next->forms[0]->instants == 0 && !next->at_bound) enough = enough || (detection.chance <= rules.accept_p && (fall > 0.0 || next->forms[0]->line));
     const double already = now == nullptr ? 0.0 : search.explained(*now), share = search.explained(*next) - already;
     const double material = search.material(*next, before);
     const bool earns = now == nullptr || share >= rules.pair_share || (share >= rules.pair_least && material >= rules.pair_material) ||
@@ -196,7 +213,7 @@ const Fit* choose(const Search& search, const Rules& rules) {
 std::vector<const Fit*> rivals_of(const Search& search, const Fit& winner, const Rules& rules, const std::vector<NotTestable>& hidden) {
   std::vector<const Fit*> out;
   const bool unsure = std::any_of(winner.forms.begin(), winner.forms.end(), [&](const Form* f) {
-    return std::any_of(hidden.begin(), hidden.end(), [&](const NotTestable& n) { return n.effect == f->effect; });
+    return f->one_size || std::any_of(hidden.begin(), hidden.end(), [&](const NotTestable& n) { return n.effect == f->effect; });
   });
   const double tie = unsure ? rules.untestable_tie : rules.tie;
   for (const Fit& f : search.candidates()) {
@@ -387,7 +404,7 @@ Result reconcile(const Dataset& d, const Options& options) {
     if (options.progress) options.progress("challenge", 0.85);
     r.baseline_alone = baseline_estimates(search.fitter(), search.base(), std::max(1.0, search.structure(search.base()).dispersion));
     r.detection = detect(search, r.forms);
-    const Fit* winner = choose(search, r.rules);
+    const Fit* winner = choose(search, r.rules, *r.detection);
     // a line leaves no window's sum behind: it was tested in the spectrum
     const bool line = winner != nullptr && std::any_of(winner->forms.begin(), winner->forms.end(), [](const Form* f) { return f->line; });
     if (winner != nullptr && !line && r.detection->p > r.rules.detect_p) winner = nullptr;

@@ -1,4 +1,4 @@
-// Detection by parametric bootstrap (Davison & Hinkley 1997, ch. 4): 200 repetitions in which the baseline is true, with the noise as it was
+// Detection by parametric bootstrap (Davison & Hinkley 1997, ch. 4): 2000 repetitions in which the baseline is true, with the noise as it was
 // estimated, scales of the records drawn anew and every parameter fitted again (linearly). Two statistics, each against its own maximum in
 // the repetitions, so that the number of places and effects looked at costs nothing: the largest sum of the residual over a window, and the
 // best score test of the whole catalogue. p is twice the smaller of the two (Bonferroni).
@@ -11,7 +11,7 @@
 namespace filum::reconcile {
 namespace {
 
-constexpr int kRepetitions = 400;
+constexpr int kRepetitions = 2000;
 
 double best_score(const std::vector<Screen::Direction>& directions, const std::vector<Eigen::VectorXd>& y) {
   double best = 0.0;
@@ -64,11 +64,13 @@ Detection detect(const Search& search, const std::vector<Form>& forms) {
   int windows = 0, effects = 0;
   for (int i = 0; i < kRepetitions; ++i) {
     auto y = screen.repetition(rng);
-    effects += best_score(directions, y) >= out.score ? 1 : 0;
+    out.null_scores.push_back(best_score(directions, y));
+    effects += out.null_scores.back() >= out.score ? 1 : 0;
     screen.refit(y);
     windows += strongest_window(y).value >= out.statistic ? 1 : 0;
   }
   out.p = std::min(1.0, 2.0 * (1.0 + std::min(windows, effects)) / (1.0 + kRepetitions));
+  std::sort(out.null_scores.begin(), out.null_scores.end());
   if (screen.residuals().empty()) return out;
   const Trial& t = search.fitter().model().data().trials[static_cast<std::size_t>(screen.trials()[seen.trial])];
   const auto at = [&](Eigen::Index k) { return t.time[k % t.time.size()]; };  // outputs stand one behind the other

@@ -25,6 +25,8 @@ struct Form {
   std::vector<ParamSpec> params;
   std::vector<std::vector<double>> starts;
   bool line = false;                               // adds sine and cosine columns of free phase to every record
+  bool one_size = false;                           // the size by which it would be known is the same in all trials
+  int instants = 0;                                // places read off the records, chosen among all samples
 };
 
 /// A tube's pressure by finite elements against the reduced model's, at motions r'^2 = R^2 + 2 C.

@@ -184,8 +184,10 @@ std::vector<Form> Needle::forms() const {
       p.push_back({"depth_" + std::to_string(j + 1), "m", 0.999 * at, 1.001 * at, false});
       start.push_back(at);
     }
-    f.push_back({Effect::layer_rupture, 0, "ramp of the tissue's stiffness before each further drop", p, {start}, false});
-    f.push_back({Effect::layer_rupture, 1, "ramp from the drop before", p, {start}, false});
+    int instants = 0;
+    for (const Events& e : events_) instants += std::clamp(static_cast<int>(e.drops.size()), 1, layers_) - 1;
+    f.push_back({Effect::layer_rupture, 0, "ramp of the tissue's stiffness before each further drop", p, {start}, false, false, instants});
+    f.push_back({Effect::layer_rupture, 1, "ramp from the drop before", p, {start}, false, false, instants});
   }
   const double per = fs / deepest_;
   const ParamSpec length{"friction_per_length", "N/m", 1e-4 * per, 5 * per, true};

@@ -148,6 +148,7 @@ void checks(const Result& r, std::ostringstream& s) {
     const Detection& x = *r.detection;
     s << "<h2>Is anything missing?</h2><p>The largest sum of the baseline's residual over any window is " << number(x.statistic, 3) << " standard deviations (" << escaped(x.trial) << ", " << number(x.from) << " s to " << number(x.to)
       << " s), the best score test of the catalogue " << number(x.score, 4) << ". The rarer of the two among " << x.repetitions << " simulated repetitions in which the baseline is true: p = " << number(x.p, 2)
+      << "; some effect or line does as well as the best single one here in " << number(x.chance, 2) << " of such sets"
       << ". What lies beyond the noise amounts to " << number(100 * x.excess, 2) << " % of full scale; " << number(100 * r.rules.materiality, 2) << " % is material.</p>\n";
   }
   if (!r.numerics.sensitivities.empty()) {

@@ -95,7 +95,7 @@ Json report_json(const Dataset& d, const Result& r) {
   j["tried"] = tried;
   if (r.verdict == "ambiguous") j["ambiguity"] = {{"correlation", finite(r.correlation)}, {"masked", finite(r.masked)}};
   if (r.detection)
-    j["detection"] = {{"statistic", finite(r.detection->statistic)}, {"score", finite(r.detection->score)}, {"p", r.detection->p}, {"repetitions", r.detection->repetitions}, {"excess", finite(r.detection->excess)},
+    j["detection"] = {{"statistic", finite(r.detection->statistic)}, {"score", finite(r.detection->score)}, {"p", r.detection->p}, {"chance", r.detection->chance}, {"repetitions", r.detection->repetitions}, {"excess", finite(r.detection->excess)},
                       {"trial", r.detection->trial}, {"from", finite(r.detection->from)}, {"to", finite(r.detection->to)}};
   if (r.confirmation) {
     const Confirmation& c = *r.confirmation;

@@ -69,6 +69,8 @@ struct Detection {
   double score = 0.0;       // best score test of the catalogue: fall of chi2
   double p = 1.0;           // of the rarer of the two among the repetitions, (1 + k)/(1 + B), doubled
   int repetitions = 0;
+  std::vector<double> null_scores;  // best score test of each repetition, ascending
+  double chance = 1.0;      // that where nothing is missing some effect does as well as the best one here
   double excess = 0.0;      // of full scale: rms of what is beyond the noise
   std::string trial;
   double from = 0.0, to = 0.0;  // [s], the window

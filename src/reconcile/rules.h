@@ -10,7 +10,9 @@ struct Rules {
   double detect = 18.0;              // fall of chi2 (over the overdispersion) that the best effect must bring
   double structure = 7.0;            // standard deviations of the residual's block sums that show that something is missing
   double detect_p = 0.01;            // of the windowed maximum, by parametric bootstrap: above it nothing is named
-  double accept_evidence = 10.0;     // fall of BIC against the baseline
+  double accept_evidence = 10.0;     // fall of BIC against the baseline, or
+  double accept_p = 0.0025;          // chance that in a set where nothing is missing the best of the catalogue does as well (parametric bootstrap; a
+                                     // line: by the spectrum): BIC's log n asks a prior that a weak effect of two or three values cannot pay
   double explained = 0.70;           // share of the structure that a name must explain
   double held_out = 0.50;            // the same on protocols that were not fitted
   double tie = 6.0;                  // rivals nearer than this in BIC are not told apart

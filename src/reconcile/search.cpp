@@ -12,6 +12,8 @@
 namespace filum::reconcile {
 namespace {
 
+constexpr double kSeen = 0.05;  // p below which each of two lines that are named together must stand out
+
 std::set<Effect> set_of(const Fit& f) {
   std::set<Effect> s;
   for (const Form* form : f.forms) s.insert(form->effect);
@@ -90,24 +92,61 @@ Fit Search::separate(const Fit& from, double frequency) const {
   return out;
 }
 
+/// Bands in which an effect's lines are looked for [Hz].
+static std::vector<std::pair<double, double>> bands_of(const Form& f, std::size_t line) {
+  if (f.effect == Effect::mains_hum) return {{49.85, 50.15}, {59.85, 60.15}};
+  return {{f.params[line].low, f.params[line].high}};
+}
+
+/// Strongest line of one of a form's frequencies that goes through two periods in the longest record: less is not told from what is slow.
+Line Search::line_of(const Form& f, std::size_t line, const Fit& from) const {
+  Line best;
+  double span = 0.0;
+  for (const Trial& t : model_.data().trials) span = std::max(span, t.time[t.samples() - 1] - t.time[0]);
+  for (const auto& [lowest, high] : bands_of(f, line)) {
+    const double low = std::max(lowest, 2.0 / span);
+    if (low >= high) continue;
+    Line found = strongest_line(fitter_, from, low, high);
+    if (f.effect == Effect::mains_hum) found = strongest_line(fitter_, separate(from, found.frequency), low, high);
+    if (found.gain > best.gain) best = found;
+  }
+  return best;
+}
+
+/// Places in a band where a line may stand: two to each width of a record's own resolution.
+double Search::places(const Form& f, std::size_t line) const {
+  double span = 0.0, width = 0.0;
+  for (const Trial& t : model_.data().trials) span = std::max(span, t.time[t.samples() - 1] - t.time[0]);
+  for (const auto& [low, high] : bands_of(f, line)) width += high - low;
+  return 1.0 + 2.0 * width * span;
+}
+
+double Search::line_p(const Form& form, const Fit& from) const {
+  double gain = 0.0, looks = 1.0;
+  int columns = 0;
+  for (std::size_t k = 0; k < form.params.size(); ++k) {
+    const Line line = line_of(form, k, from);
+    if (places(form, k) * chi2_tail(line.gain, line.columns) > kSeen) return 1.0;
+    gain += line.gain;
+    columns += line.columns;
+    looks *= places(form, k);
+  }
+  return std::min(1.0, looks * chi2_tail(gain, columns));
+}
+
 std::vector<Score> Search::lines(const Fit& from) const {
   std::vector<Score> out;
   for (const Form& f : forms_) {
     if (!f.line || std::any_of(from.forms.begin(), from.forms.end(), [&](const Form* g) { return g->effect == f.effect; })) continue;
-    std::vector<std::pair<double, double>> bands = {{f.params[0].low, f.params[0].high}};
-    if (f.effect == Effect::mains_hum) bands = {{49.85, 50.15}, {59.85, 60.15}};
-    if (f.params.size() == 2) {  // heart and breath together
-      const Line heart = strongest_line(fitter_, from, bands[0].first, bands[0].second), breath = strongest_line(fitter_, from, f.params[1].low, f.params[1].high);
-      const auto clear = [](const Line& l) { return l.gain > l.columns + 4.5 * std::sqrt(2.0 * l.columns) + 12.0; };
-      if (clear(heart) && clear(breath)) out.push_back({&f, {heart.frequency, breath.frequency}, heart.gain + breath.gain, 1.0, heart.gain + breath.gain, 0.0});
-      continue;
+    if (line_p(f, from) > options_.rules.accept_p) continue;
+    Score s{&f, {}, 0.0, 1.0, 0.0, 0.0};
+    for (std::size_t k = 0; k < f.params.size(); ++k) {
+      const Line line = line_of(f, k, from);
+      s.start.push_back(line.frequency);
+      s.gain += line.gain;
     }
-    for (const auto& [low, high] : bands) {
-      Line line = strongest_line(fitter_, from, low, high);
-      if (f.effect == Effect::mains_hum) line = strongest_line(fitter_, separate(from, line.frequency), low, high);
-      const double expected = line.columns + 4.5 * std::sqrt(2.0 * line.columns) + 12.0;
-      if (line.gain > expected) out.push_back({&f, {line.frequency}, line.gain, 1.0, line.gain, 0.0});
-    }
+    s.seen = s.gain;
+    out.push_back(std::move(s));
   }
   return out;
 }
@@ -161,11 +200,15 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
 double Search::bic(const Fit& f) const {
   constexpr double kAmplitude = 3.0;  // half of log(2 pi S^2), with a margin
   int lines = 0;
-  for (const Form* form : f.forms) lines += !form->line ? 0 : form->effect == Effect::pulsation && form->kind >= 2 ? 2 : 1;
+  int instants = 0;  // a change point costs as a parameter does, though no slope leads to it (Zhang & Siegmund 2007)
+  for (const Form* form : f.forms) {
+    lines += !form->line ? 0 : form->effect == Effect::pulsation && form->kind >= 2 ? 2 : 1;
+    instants += form->instants;
+  }
   const auto records = std::count(fitter_.use.begin(), fitter_.use.end(), true);
   const double amplitudes = 2.0 * lines * static_cast<double>(records) * static_cast<double>(model_.data().outputs.size());
   const double each = std::log(static_cast<double>(f.samples));
-  return f.chi2 / dispersion_ + (f.parameters - amplitudes) * each + amplitudes * std::min(kAmplitude, each);
+  return f.chi2 / dispersion_ + (f.parameters + instants - amplitudes) * each + amplitudes * std::min(kAmplitude, each);
 }
 
 double Search::preference(const Fit& f) const {

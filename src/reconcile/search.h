@@ -20,6 +20,7 @@ class Search {
 
   const Fitter& fitter() const { return fitter_; }
   const Fit& base() const { return base_; }
+  const std::vector<Form>& forms() const { return forms_; }
   /// Best fit of each set of effects.
   const std::vector<Fit>& candidates() const { return candidates_; }
   double dispersion() const { return dispersion_; }
@@ -35,11 +36,15 @@ class Search {
   /// What the residual holds beyond what replicates differ by.
   Structure structure(const Fit& f) const;
   const Fit* best(std::size_t effects) const;
+  /// Chance that noise of the spectrum's local height brings lines as strong somewhere in their bands (Bonferroni).
+  double line_p(const Form& form, const Fit& from) const;
 
  private:
   void fit_baseline();
   std::vector<Fit> extend(const Fit& from, int most_effects, int most_forms) const;
   std::vector<Score> lines(const Fit& from) const;
+  Line line_of(const Form& f, std::size_t line, const Fit& from) const;
+  double places(const Form& f, std::size_t line) const;
   Fit separate(const Fit& from, double frequency) const;
   void keep(std::vector<Fit> fits);
   void refresh();

@@ -185,6 +185,16 @@ Window strongest_window(const std::vector<Eigen::VectorXd>& white) {
   return best;
 }
 
+double chi2_tail(double x, int freedom) {
+  if (!(x > 0.0)) return 1.0;
+  double sum = 0.0, log_term = -0.5 * x;
+  for (int j = 0; j < freedom / 2; ++j) {
+    sum += std::exp(log_term);
+    log_term += std::log(0.5 * x) - std::log(j + 1.0);
+  }
+  return std::min(1.0, sum);
+}
+
 Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double high) {
   const Dataset& d = fitter.model().data();
   Line best;
@@ -195,10 +205,10 @@ Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double hig
   }
   const double step = 0.3 / span;
   // a narrow band may lie wholly below the peak of a short record: the background is taken on both sides of it
-  const double beside = low > 5.0 ? std::min(8.0 / shortest, 3.0) : 0.0;
+  const double beside = low > 5.0 ? std::min(8.0 / shortest, 3.0) : step;
   std::vector<double> power, frequency;
   int columns = 0;
-  for (double f = low - beside; f <= high + beside + 1e-12 && frequency.size() < 4000; f += step) frequency.push_back(f);
+  for (double f = std::max(low - beside, 0.5 * step); f <= high + beside + 1e-12 && frequency.size() < 4000; f += step) frequency.push_back(f);
   power.assign(frequency.size(), 0.0);
   for (std::size_t i = 0; i < d.trials.size(); ++i) {
     if (i >= fit.residual.size() || fit.residual[i].empty()) continue;
@@ -225,9 +235,11 @@ Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double hig
       }
     }
   }
+  // what rises towards the end of the band is a slope, no line
+  const auto top = [&](std::size_t k) { return (k == 0 || power[k] >= power[k - 1]) && (k + 1 == power.size() || power[k] >= power[k + 1]); };
   const double background = std::max(1.0, median(power) / std::max(1.0, columns - 0.7));
   for (std::size_t k = 0; k < power.size(); ++k)
-    if (frequency[k] >= low && frequency[k] <= high && power[k] / background > best.gain) best = {frequency[k], power[k] / background, columns};
+    if (frequency[k] >= low && frequency[k] <= high && top(k) && power[k] / background > best.gain) best = {frequency[k], power[k] / background, columns};
   return best;
 }
 

@@ -37,6 +37,8 @@ struct Line {
   double gain = 0.0;       // fall of chi2, against the local background
   int columns = 0;         // free amplitudes it costs
 };
+/// Upper tail of chi-squared with an even number of degrees of freedom: exp(-x/2) sum (x/2)^j/j!, j below half of them.
+double chi2_tail(double x, int freedom);
 /// The strongest line between two frequencies, summed over records and outputs with free phase.
 Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double high);
 

@@ -90,6 +90,7 @@ class Tissue final : public RigModel {
       radius_ = std::max(radius_, g.radius);
       height_ = std::max(height_, g.height);
       spans_.push_back(t.time[t.samples() - 1] - t.time[0]);
+      sheared_ = sheared_ || g.mode == Mode::shear;
       area_ = std::max(area_, g.area);
       travel_ = std::max(travel_, largest_ * g.height);
     }
@@ -116,6 +117,7 @@ class Tissue final : public RigModel {
   std::string input_;
   std::vector<double> spans_;
   std::set<std::pair<long, long>> sizes_;  // lateral and height [0.1 um]
+  bool sheared_ = false;
   double largest_ = 1e-9, radius_ = 0.0, height_ = 0.0, span_ = 1.0, force_ = 1.0, area_ = 0.0, travel_ = 0.0;
 };
 
@@ -303,9 +305,12 @@ std::vector<Form> Tissue::forms() const {
   f.push_back({Effect::first_cycle_softening, 2, "x/(1 + x) of the energy", {{"d", "-", 0.005, 0.9, false}, W0}, grid({{0.3}, {0.2 * w}}), false});
   f.push_back({Effect::permanent_set, 0, "fraction of the largest past strain", {{"fraction", "-", 0.002, 0.6, false}}, {{0.05}}, false});
   f.push_back({Effect::permanent_set, 1, "grows with the square of the largest past strain", {{"fraction", "-", 0.002, 0.6, false}}, {{0.05}}, false});
+  // where the size that counts is the same in all trials, and none is shear, drainage is the relaxation of a solid under another name
+  std::set<long> across, along;
+  for (const auto& [radius, height] : sizes_) across.insert(radius), along.insert(height);
   const auto drain = [&](int kind, const char* text, double D, double x = 1.0) {
     f.push_back({Effect::poroelastic_drainage, kind, text, {{"diffusivity", "m2/s", 1e-3 * D, 100 * D, true}, {"drained_share", "-", 0.01, 0.9, false}},
-                 grid({{0.05 * x * D, 0.5 * x * D, 3 * x * D}, {0.3}}), false});
+                 grid({{0.05 * x * D, 0.5 * x * D, 3 * x * D}, {0.3}}), false, !sheared_ && (kind % 2 == 0 ? across : along).size() == 1});
   };
   drain(0, "radial drainage", Dr);
   drain(1, "drainage through the height", Dh);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
-#include "reconcile/fit.h"
+#include "reconcile/search.h"
 
 namespace filum::reconcile {
 namespace {
@@ -66,6 +66,31 @@ TEST(Needle, WhatFallsWhenTheNeedleStopsIsNoRupture) {
     return std::any_of(forms.begin(), forms.end(), [](const Form& f) { return f.effect == Effect::layer_rupture; });
   };
   EXPECT_FALSE(has_layers(insertions(0.0, 0.3)));
+}
+
+/// The same through one membrane, in noise of 10 % that is slow (AR(1), 0.85): it falls here and there as far as a layer would.
+TEST(Needle, EveryInstantReadOffARecordIsCounted) {
+  Dataset d = insertions(0.0, 0.0);
+  Rng rng(5);
+  for (Trial& t : d.trials) {
+    double slow = 0.0;
+    for (double& y : t.data["force"]) y += 0.04 * (slow = 0.85 * slow + std::sqrt(1.0 - 0.85 * 0.85) * rng.normal());
+  }
+  const auto model = make_model(d);
+  const auto forms = model->all_forms();
+  const auto form = std::find_if(forms.begin(), forms.end(), [](const Form& f) { return f.effect == Effect::layer_rupture; });
+  ASSERT_NE(form, forms.end()) << "noise this slow makes a second drop in most records: the test shows nothing otherwise";
+  int further = 0;
+  for (const Trial& t : d.trials) further += std::min<int>(static_cast<int>(model->drops(t).size()), 1 + static_cast<int>(form->params.size()) / 2) - 1;
+  EXPECT_GE(further, 2);
+  EXPECT_EQ(form->instants, further);
+  const Options options;
+  Search search(*model, forms, options);
+  search.run();
+  for (const Fit& f : search.candidates())
+    if (f.forms.size() == 1 && f.forms[0]->effect == Effect::layer_rupture) {
+      EXPECT_GT(search.bic(f), search.bic(search.base())) << "noise passes for a layer";
+    }
 }
 
 }  // namespace

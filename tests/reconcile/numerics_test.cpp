@@ -1,6 +1,7 @@
 // What halving steps and cells changes, and differences at two steps, on models whose answer is known.
 
 #include "reconcile/numerics.h"
+#include "reconcile/structure.h"
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,13 @@ TEST(Numerics, DifferencesAgreeWhereTheModelIsSmooth) {
   const Block b;
   const Fitter f = b.fitter();
   for (const Sensitivity& s : check_sensitivities(f, b.fixed(f, {&b.form(Effect::viscoelastic_relaxation, 0)}, {{0.4, 2.0}}))) EXPECT_LT(s.disagreement, 1e-3) << s.parameter;
+}
+
+TEST(Numerics, TailOfChiSquaredIsTheTables) {
+  EXPECT_NEAR(chi2_tail(5.991, 2), 0.05, 1e-4);    // Abramowitz & Stegun, table 26.8
+  EXPECT_NEAR(chi2_tail(18.307, 10), 0.05, 1e-4);
+  EXPECT_NEAR(chi2_tail(63.691, 40), 0.01, 1e-4);
+  EXPECT_DOUBLE_EQ(chi2_tail(0.0, 4), 1.0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <set>
 
 #include "reconcile/model.h"
 
@@ -102,6 +103,31 @@ TEST(Rigs, OgdenOfAlphaTwoIsNeoHookean) {
   Eigen::MatrixXd out;
   model->simulate(d.trials[0], s, out);
   EXPECT_NEAR(out(10, 0), 300.0 * (1.2 - 1.0 / 1.44) * 1e-4, 1e-12);
+}
+
+TEST(Rigs, DrainageIsKnownByTheSizeThatVaries) {
+  const auto unknown = [](const std::vector<std::array<double, 2>>& sizes, const char* mode) {  // forms of drainage that one size leaves open
+    Dataset d = dataset(Rig::tissue_block, {"force"});
+    for (const auto& [width, height] : sizes) {
+      Trial t = trial(5, 1.0);
+      t.shape = "cuboid";
+      t.specimen = {{"length", width}, {"width", width}, {"height", height}};
+      t.protocol = {{"mode", "compression"}};
+      t.data["displacement"] = Eigen::VectorXd::LinSpaced(5, 0.0, -0.1 * height);
+      t.data["force"] = Eigen::VectorXd::LinSpaced(5, 0.0, -1e-3);
+      d.trials.push_back(t);
+    }
+    d.trials.back().protocol["mode"] = mode;
+    std::set<int> kinds;
+    const auto model = make_model(d);
+    for (const Form& f : model->all_forms())
+      if (f.effect == Effect::poroelastic_drainage && f.one_size) kinds.insert(f.kind);
+    return kinds;
+  };
+  EXPECT_EQ(unknown({{5e-3, 5e-3}, {5e-3, 2e-3}}, "compression"), (std::set<int>{0, 2}));  // through the sides: the width is the same
+  EXPECT_EQ(unknown({{5e-3, 5e-3}, {9e-3, 5e-3}}, "compression"), (std::set<int>{1, 3}));  // through the height
+  EXPECT_EQ(unknown({{5e-3, 5e-3}, {9e-3, 2e-3}}, "compression"), std::set<int>{});
+  EXPECT_EQ(unknown({{5e-3, 5e-3}, {5e-3, 2e-3}}, "shear"), std::set<int>{});  // shear keeps the volume: what relaxes there is the solid
 }
 
 }  // namespace

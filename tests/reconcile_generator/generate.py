@@ -79,8 +79,8 @@ def build(cls, kind, seed):
     if kind == 'unidentifiable' and cls is Tissue:
         rig.two, rig.shear, rig.free = False, False, ['youngs_modulus']
         rig.protocols = lambda: [('compression', 1.0, 1.0), ('compression', 3.0, 1.0)]
-    # half of the single effects are to be hard to see: weak ones, in as much noise as brings them to a signal to noise ratio of 4-8
-    faint = rng.uniform(4, 8) if kind == 'single' and cls is not Hold and rng.random() < 0.5 else 0.0
+    # three in four of the single effects are to be hard to see: weak ones, in as much noise as brings them to a signal to noise ratio of 4-8
+    faint = rng.uniform(4, 8) if kind == 'single' and cls is not Hold and rng.random() < 0.75 else 0.0
     fx = {n: rig.draw(n, rng.uniform(-0.1, 0.4) if faint else rng.uniform(0.1, 1.0)) for n in names}
     scatter = 0.0 if cls in (Forceps, Hold) else rng.choice([0.0, 0.05, 0.08])
     replicates = int(rng.integers(2, 4))

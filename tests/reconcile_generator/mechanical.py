@@ -120,7 +120,7 @@ class Tissue:
             f = np.where(gap, 0.0, f)
             if 'contact-adhesion' in fx:
                 pull, reach = fx['contact-adhesion']['pull_off'], fx['contact-adhesion']['reach'] * abs(e_peak) * h
-                f = np.where(gap & (t > 0.5 * T), pull * area * np.clip(np.minimum(u / (0.1 * reach), (reach - u) / (0.9 * reach)), 0, 1), f)
+                f = np.where(gap & (t > 0.5 * T), pull * getattr(self, 'area', area) * np.clip(np.minimum(u / (0.1 * reach), (reach - u) / (0.9 * reach)), 0, 1), f)
         if 'pulsation' in fx:
             f = f + F.beat(t, self.rng, fx['pulsation']['frequency'], fx['pulsation']['amplitude'], fx['pulsation']['breath'])
         return t, {'displacement': u}, {'force': f}, {'mode': mode, 'rate': ('%.5g mm/s' % (1e3 * self.rate * speed * h))}, ({'height': h} if size != 1 else {})
@@ -181,12 +181,22 @@ class Spatula(Tissue):
             fx = {k: dict(v) for k, v in fx.items()}
             if 'poroelastic-drainage' in fx:
                 fx['poroelastic-drainage']['diffusivity'] /= size ** 2
-        t, x, y, prot, _ = Tissue.trial(self, (mode, speed, 1.0), fx, scale * 1.3 * size)
+        t, x, y, prot, _ = Tissue.trial(self, (mode, speed, 1.0), fx, scale * self.punch(size))
         prot = {'rate': prot['rate'], 'hold': '%.4g s' % (0.17 * t[-1])}
         return t, {'depth': -x['displacement']}, {'force': -y['force']}, prot, ({'blade_width': w * size, 'blade_length': 2 * w * size} if size != 1 else {})
 
+    def punch(self, size):
+        """Stiffness of a round punch of the blade's area on a bonded layer (Hayes et al. 1972, table for nu = 0.5), over that of a block w x w x h."""
+        self.area = 2 * (self.w * size) ** 2
+        a = np.sqrt(self.area / np.pi)
+        kappa = np.interp(a / self.h, [0, 0.2, 0.4, 0.6, 0.8, 1.0], [1, 1.281, 1.683, 2.211, 2.855, 3.609])
+        return 2 * a * kappa / (1 - 0.49 ** 2) * self.h / self.w ** 2
+
     def draw(self, name, s):
         d = Tissue.draw(self, name, s)
+        for force in ('amplitude', 'size', 'pull_off'):  # drawn for a block
+            if force in d and name != 'offset-step':
+                d[force] *= self.punch(1.0) * (self.w ** 2 / self.area if force == 'pull_off' else 1.0)
         if name == 'poroelastic-drainage':
             T = 2 * self.peak / self.rate * 2 / 0.4
             d['radial'], d['diffusivity'] = True, (self.w / 2) ** 2 / T * self.rng.uniform(0.3, 1.5)
