@@ -2,12 +2,14 @@
 
 #include "world/join_test.h"
 #include "world/pull_test.h"
+#include "world/vessel_model.h"
 
 namespace filum {
 namespace {
 
 JoinReport tested_join(const World& world) {
-  const JoinTestOptions options;
+  JoinTestOptions options;
+  options.pressure = world.model().vessel->circulation.pressure;
   const JoinTestReport t = join_test(world.model(), world.state(), options);
   JoinReport r;
   r.pressure = options.pressure;

@@ -336,14 +336,14 @@ bool VesselWall::advance(const WallState& state) noexcept {
     trial_x_ = x_ + step * direction_.reshaped(3, x_.cols());
     trial_energy_ = evaluate(state);
     if (std::isfinite(trial_energy_)) {
-      if (pressed_) trial_energy_ -= 0.5 * step * (flat(push_) + flat(trial_push_)).dot(direction_);
-      const bool falls = trial_energy_ <= energy_ - kDecrease * step * slope;
-      const bool level = trial_energy_ <= energy_ + noise && flat(trial_residual_).dot(direction_) >= -kBack * slope;
+      const double change = trial_energy_ - energy_ - (pressed_ ? 0.5 * step * (flat(push_) + flat(trial_push_)).dot(direction_) : 0.0);
+      const bool falls = change <= -kDecrease * step * slope;
+      const bool level = change <= noise && flat(trial_residual_).dot(direction_) >= -kBack * slope;
       if (falls || level || trial_residual_.norm() < kBetter * before) {
         taken_ = step;
         return true;
       }
-      const double best = 0.5 * slope * step / (slope + (trial_energy_ - energy_) / step);  // of the parabola
+      const double best = 0.5 * slope * step / (slope + change / step);  // of the parabola
       step *= std::clamp(best / step, 0.02, 0.5);
     } else {
       step *= 0.25;
@@ -416,7 +416,7 @@ WallSummary VesselWall::step(WallState& state) noexcept {
     }
     ++summary.iterations;
     add_pair(state.history);
-    energy_ = trial_energy_;  // less work of pressure: only differences from here on matter
+    energy_ = trial_energy_;
     push_.swap(trial_push_);
     x_.swap(trial_x_);
     residual_.swap(trial_residual_);

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "collision/point_triangle.h"
+#include "physics/vessel_leak.h"
 
 namespace filum {
 namespace {
 
 constexpr int kRows = 2;         // of elements behind the cut
+constexpr double kAcross = 0.5;  // of a ring's radius, that the wall across may be away
 constexpr double kAside = 0.5;   // of the reach, by which a node may stand beside a cut face that it meets
 
 Box around(const std::vector<int>& nodes, const Points& x, double reach) noexcept {
@@ -20,6 +23,12 @@ Box around(const std::vector<int>& nodes, const Points& x, double reach) noexcep
   b.low.array() -= reach;
   b.high.array() += reach;
   return b;
+}
+
+double ring_area(const std::vector<int>& ring, const Points& x) noexcept {
+  Vec3 twice = Vec3::Zero();
+  for (std::size_t k = 0; k < ring.size(); ++k) twice += Vec3(x.col(ring[k])).cross(Vec3(x.col(ring[(k + 1) % ring.size()])));
+  return 0.5 * twice.norm();
 }
 
 bool holds(const Box& b, const Vec3& q) noexcept { return (q.array() >= b.low.array()).all() && (q.array() <= b.high.array()).all(); }
@@ -43,6 +52,16 @@ WallMeetings::WallMeetings(const VesselMesh& mesh, double reach, double stiffnes
   }
   std::size_t all = 0;
   for (const auto& nodes : rim_) all += nodes.size();
+  around_.assign(mesh.slab.size(), -1);
+  for (std::size_t part = 0; part < parts; ++part)
+    for (const auto& nodes : inner_rings(mesh, static_cast<int>(part))) {
+      const double area = ring_area(nodes, mesh.nodes), side = (mesh.nodes.col(nodes[1]) - mesh.nodes.col(nodes[0])).norm();
+      if (area < side * side) continue;  // a row of a card
+      rings_.push_back({nodes, area});
+      across_ = std::max(across_, kAcross * std::sqrt(rings_.back().area / std::numbers::pi));
+      for (std::size_t k = 0; k < nodes.size(); ++k) around_[static_cast<std::size_t>(nodes[k])] = static_cast<int>(k);
+      all += nodes.size();
+    }
   list_.resize(all);
   found_.reserve(256);
 }
@@ -58,6 +77,45 @@ void WallMeetings::find(const VesselMesh& mesh, const SurfaceTree& tree, const P
         if (holds(other, x.col(i)) && meet(mesh, tree, x, i, list_[static_cast<std::size_t>(n_)])) ++n_;
       }
     }
+  close_lumen(mesh, tree, x);
+}
+
+void WallMeetings::close_lumen(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x) noexcept {
+  for (const Ring& ring : rings_) {
+    if (ring_area(ring.nodes, x) > kNearlyShut * ring.area) continue;
+    for (const int i : ring.nodes) {
+      if (static_cast<std::size_t>(n_) == list_.size()) return;
+      if (meet_across(mesh, tree, x, i, list_[static_cast<std::size_t>(n_)])) ++n_;
+    }
+  }
+}
+
+/// The nearest inner face of the node's own part that is not beside it.
+bool WallMeetings::meet_across(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x, int node, WallMeeting& m) noexcept {
+  const Vec3 q = x.col(node);
+  const auto own = static_cast<std::size_t>(node);
+  const int turn = static_cast<int>(rings_.front().nodes.size());
+  const auto beside = [&](int other) {
+    const int apart = std::abs(around_[static_cast<std::size_t>(other)] - around_[own]);
+    return 8 * std::min(apart, turn - apart) <= turn;
+  };
+  found_.clear();
+  tree.overlaps({q - Vec3::Constant(across_), q + Vec3::Constant(across_)}, found_);
+  double least = across_;
+  bool met = false;
+  for (const int k : found_) {
+    if (mesh.faces[static_cast<std::size_t>(k / 2)].surface != WallSurface::inner) continue;
+    const Triangle& t = tree.triangles()[static_cast<std::size_t>(k)];
+    if (mesh.node_part[static_cast<std::size_t>(t[0])] != mesh.node_part[own] || beside(t[0]) || beside(t[1]) || beside(t[2])) continue;
+    const Vec3 a = x.col(t[0]), b = x.col(t[1]), c = x.col(t[2]);
+    const TrianglePoint p = closest_on_triangle(q, a, b, c);
+    const double distance = (q - p.point).norm();
+    if (distance >= least) continue;
+    least = distance;
+    met = true;
+    m = {node, t, p.weights, (b - a).cross(c - a).normalized()};
+  }
+  return met;
 }
 
 /// A cut face of another part that the node stands before or in, if there is one; else the nearest face. Edges of one shape meet rim on rim, where

@@ -4,7 +4,9 @@
 // x_k the corners of a face that node i stands before at the start of the step (a cut face if there is one, else the nearest) and n its normal there (node
 // to face, both ways; Wriggers, Computational Contact Mechanics, 2006, sec. 6). Pairs are found once a step among nodes within `reach` of a face, touching or not, so that what
 // touches during the step is met in it. The potential is part of the wall's own step: both sides move in one equilibrium.
-// Neglects: friction, faces of the same part (a lumen pressed flat passes into itself), nodes further than two rows from the cut. Test: wall_meeting_test.
+// A lumen that is nearly shut meets itself: where a ring of inner nodes spans less than kNearlyShut of its first area, its nodes are paired with the
+// inner faces across from them (an eighth of a turn away at least).
+// Neglects: friction, outer faces of one part against each other, nodes further than two rows from the cut against other parts. Test: wall_meeting_test.
 
 #include <array>
 #include <vector>
@@ -13,6 +15,8 @@
 #include "physics/vessel_mesh.h"
 
 namespace filum {
+
+inline constexpr double kNearlyShut = 0.4;
 
 struct WallMeeting {
   int node = 0;
@@ -39,10 +43,19 @@ class WallMeetings {
   double reach() const noexcept { return reach_; }
 
  private:
+  void close_lumen(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x) noexcept;
+  bool meet_across(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x, int node, WallMeeting& m) noexcept;
   bool meet(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x, int node, WallMeeting& m) noexcept;
 
   double reach_ = 0.0, stiffness_ = 0.0;   // [m], [N/m]
   std::vector<std::vector<int>> rim_;      // of each part: nodes near its cut edge
+  struct Ring {
+    std::vector<int> nodes;                // of a lumen, in turn
+    double area = 0.0;                     // [m2], at first
+  };
+  std::vector<Ring> rings_;
+  std::vector<int> around_;                // of each inner node: which of its ring
+  double across_ = 0.0;                    // [m], how far from the wall across is looked for
   std::vector<WallMeeting> list_;
   std::vector<int> found_;
   int n_ = 0;

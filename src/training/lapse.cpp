@@ -12,10 +12,7 @@ namespace {
 class CutLine {
  public:
   explicit CutLine(const TissueDescription& d) : d_(d) {}
-  double angle(const Vec3& p) const {
-    const Vec3 r = p - d_.middle;
-    return std::atan2(r.dot(d_.axis.cross(d_.cut_along)), r.dot(d_.cut_along));
-  }
+  double angle(const Vec3& p) const { return angle_around(d_, p); }
   double turn(const Vec3& a, const Vec3& b) const { return std::remainder(angle(b) - angle(a), 2.0 * std::numbers::pi); }
   double along(const Vec3& a, const Vec3& b) const { return d_.lumen ? d_.radius * turn(a, b) : (b - a).dot(d_.cut_along); }
   double across(const Vec3& a, const Vec3& b) const {
@@ -51,6 +48,11 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut)
 }
 
 }  // namespace
+
+double angle_around(const TissueDescription& d, const Vec3& p) {
+  const Vec3 r = p - d.middle;
+  return std::atan2(r.dot(d.axis.cross(d.cut_along)), r.dot(d.cut_along));
+}
 
 LapseRules load_lapse_rules(const std::string& path) {
   const YamlNode file = YamlNode::load(path);

@@ -56,6 +56,9 @@ struct Lapse {
   const char* unit = "-";
 };
 
+/// [rad], around a vessel, of a place at rest.
+double angle_around(const TissueDescription& d, const Vec3& p);
+
 /// The cut of a card is straight, that of a vessel runs round its axis.
 std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<double>& pass_time, const TissueDescription& scene);
 std::vector<double> spacings_of(const std::vector<Stitch>& stitches);  // [m], between neighbours along the cut

@@ -10,8 +10,17 @@
 
 namespace filum {
 
+/// Where the next stitches of a technique belong (training/stitch_order.h).
+struct StitchRule {
+  int count = 1;                  // so many
+  double from = 0.0, span = 7.0;  // [rad], sector of the vessel; a whole turn: anywhere
+  double apart = 0.0, within = 0.0;  // [rad], from every goal of one stitch before; running: from the stitch before, the way it has gone; 0: any
+  double clear = 0.0;             // [rad], at least, from every stitch before
+  bool running = false;           // on one thread without a cut or knot
+};
+
 struct NeedleGoal {
-  enum class Kind { pick, load, present, pass, draw, eye, tie, cut } kind = Kind::pick;
+  enum class Kind { pick, load, present, pass, draw, eye, tie, cut, stitch } kind = Kind::pick;
   int tool = 0;
   double low = 0.0, high = 1.0;   // load: where on the needle, share of its length from the swage
   double angle = 0.0;             // [rad], load: largest deviation from a right angle between wire and handle
@@ -24,6 +33,7 @@ struct NeedleGoal {
   std::string knot;               // tie: its class, empty: any
   double loop = 0.0;              // [m], tie: thread in bites and knot at most
   double tail = 0.0;              // [m], draw: thread left before the first entry
+  StitchRule stitch;              // stitch
 };
 
 struct RatingScale;  // training/rating_scale.h

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
+constexpr double kLookEvery = 0.25;  // [s], at the thread for knots
 
 int passes_done(const TissueObservation& t) {
   return static_cast<int>(std::count_if(t.passes.begin(), t.passes.begin() + t.n_passes, [](const PassObservation& p) {
@@ -43,9 +44,28 @@ double thread_left(const Observation& o) {
 
 }  // namespace
 
+/// Angles are those of the stitches' table: from where the vessel's angle is zero.
+StitchRule parse_stitch_rule(const YamlNode& node) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  StitchRule r;
+  r.count = node.integer_or("stitches", 1, 1, kMaxPasses / 2);
+  if (node.has("from")) {
+    r.from = node.quantity("from", "deg", Range::between(-kTurn, kTurn));
+    r.span = node.quantity("to", "deg", Range::between(r.from, r.from + kTurn)) - r.from;
+  }
+  if (node.has("apart")) {
+    r.apart = node.quantity("apart", "deg", Range::between(1e-3, std::numbers::pi));
+    r.within = node.quantity("within", "deg", Range::positive());
+  }
+  r.clear = node.quantity_or("clear", "deg", 0.0, Range::between(0.0, std::numbers::pi));
+  r.running = node.flag_or("running", false);
+  if (r.running && r.apart == 0.0) node.refuse("apart", "how far a running thread goes from stitch to stitch");
+  return r;
+}
+
 NeedleGoal parse_needle_goal(const YamlNode& node) {
   NeedleGoal g;
-  const std::string kind = node.choice("kind", {"pick", "load", "present", "pass", "draw", "eye", "tie", "cut"});
+  const std::string kind = node.choice("kind", {"pick", "load", "present", "pass", "draw", "eye", "tie", "cut", "stitch"});
   g.tool = node.integer_or("tool", 0, 0, 2);
   if (kind == "load") {
     g.kind = NeedleGoal::Kind::load;
@@ -63,6 +83,9 @@ NeedleGoal parse_needle_goal(const YamlNode& node) {
     g.at = node.vec3("in", "mm");
     g.out = node.vec3("out", "mm");
     g.within = node.quantity("within", "mm", Range::positive());
+  } else if (kind == "stitch") {
+    g.kind = NeedleGoal::Kind::stitch;
+    g.stitch = parse_stitch_rule(node);
   } else if (kind == "cut") {
     g.kind = NeedleGoal::Kind::cut;
     g.passes = node.integer_or("passes", 2, 1, kMaxPasses);
@@ -98,6 +121,8 @@ double needle_value(Measure measure, const NeedleReport& r) {
       return r.drops;
     case Measure::needle_present:
       return r.present_error;
+    case Measure::stitch_order:
+      return r.out_of_turn < 0 ? kNaN : r.out_of_turn;
     case Measure::stitches:
       return r.has_tissue ? static_cast<double>(r.stitches.size()) : kNaN;
     case Measure::bite_inequality:
@@ -117,7 +142,7 @@ double needle_value(Measure measure, const NeedleReport& r) {
   }
 }
 
-NeedleWatch::NeedleWatch(const NeedleTask& task, const SceneDescription& scene) : task_(task), scene_(scene) {
+NeedleWatch::NeedleWatch(const NeedleTask& task, const SceneDescription& scene) : task_(task), scene_(scene), order_(task.goals, scene.tissue) {
   pass_time_.reserve(kMaxPasses);
 }
 
@@ -147,9 +172,8 @@ bool NeedleWatch::through_eye(const NeedleGoal& g, const TissueObservation& t) {
 }
 
 bool NeedleWatch::tied(const NeedleGoal& g, const Observation& o) {
-  constexpr double kEvery = 0.25;  // [s]
   if (o.time < next_knot_) return tied_;
-  next_knot_ = o.time + kEvery;
+  next_knot_ = o.time + kLookEvery;
   tied_ = false;
   if (passes_done(o.tissue) < g.passes) return false;
   int held = 0;
@@ -194,6 +218,10 @@ bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {
       break;
     case NeedleGoal::Kind::cut:
       return cut_off(o, g.passes);
+    case NeedleGoal::Kind::stitch:
+      if (!order_.made(step_) || (g.stitch.running && o.time < next_knot_)) return false;
+      next_knot_ = o.time + kLookEvery;
+      return !g.stitch.running || order_.runs_on(step_, o);
   }
   kept_ = now ? kept_ + dt : 0.0;
   return now && kept_ >= g.seconds;
@@ -215,6 +243,7 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
     report_.peak_force = std::max(report_.peak_force, p.peak_force);
     if (p.out && static_cast<int>(pass_time_.size()) == k) pass_time_.push_back(o.time);
   }
+  order_.observe(o, events);
   if (done() || !scored) return;
   if (!met(task_.goals[static_cast<std::size_t>(step_)], o, dt)) return;
   events.push_back({o.time, "goal-done", task_.goals[static_cast<std::size_t>(step_)].tool, step_ + 1.0, "-", {}});
@@ -229,6 +258,8 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
     r.share = share_sum_ / angle_time_;
   }
   if (present_time_ > 0.0) r.present_error = std::sqrt(square_ / present_time_);
+  if (std::any_of(task_.goals.begin(), task_.goals.end(), [](const NeedleGoal& g) { return g.kind == NeedleGoal::Kind::stitch; }))
+    r.out_of_turn = order_.out_of_turn();
   r.has_tissue = task_.has_tissue;
   if (!r.has_tissue) return r;
   r.thickness = scene_.tissue.thickness;

@@ -8,8 +8,9 @@
 //   eye      the needle has gone into the card at one mark and come out of it at another, on one way after the eyes before it
 //   tie      a knot of so many throws holds those ways, drawn down until no more thread is in its loop than `loop`, for `seconds`, and of the
 //            class `knot` if one is asked for; looked at every quarter of a second
+//   stitch   whole stitches at the places, and in the turn, that a technique asks for (training/stitch_order.h)
 //   cut      the thread is cut on either side of the first so many ways
-// Events: goal-done. Test: needle_watch_test.
+// Events: goal-done, stitch-out-of-turn. Test: needle_watch_test.
 
 #include <limits>
 #include <optional>
@@ -17,6 +18,7 @@
 
 #include "training/needle_task.h"
 #include "training/step_recogniser.h"
+#include "training/stitch_order.h"
 #include "training/task.h"
 #include "world/observation.h"
 
@@ -25,6 +27,7 @@ namespace filum {
 /// At the end of a run. SI units; NaN where there was nothing to measure.
 struct NeedleReport {
   int takes = 0, drops = 0;
+  int out_of_turn = -1;                  // stitches; -1 where no order is asked for
   double angle_error = std::numeric_limits<double>::quiet_NaN();  // [rad], mean deviation from a right angle where load was asked for
   double share = std::numeric_limits<double>::quiet_NaN();        // where it was held then
   double present_error = std::numeric_limits<double>::quiet_NaN();  // [m], root mean square while presenting, or of the holes' distances from their marks
@@ -65,6 +68,7 @@ class NeedleWatch {
   SceneDescription scene_;
   NeedleReport report_;
   TissueObservation tissue_;             // newest passes
+  StitchOrder order_;
   BloodWatch blood_;
   std::vector<double> pass_time_;        // [s], when each came out
   int step_ = 0;

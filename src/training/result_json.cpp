@@ -202,6 +202,7 @@ Json scale_json(const RatingScale& s, const NeedleReport& report) {
 
 void add_needle(const NeedleReport& n, Json& json) {
   json["needle"] = {{"takes", n.takes}, {"drops", n.drops}, {"angle_error_rad", finite(n.angle_error)}, {"held_at_share", finite(n.share)}, {"present_error_m", finite(n.present_error)}};
+  if (n.out_of_turn >= 0) json["needle"]["stitches_out_of_turn"] = n.out_of_turn;
   if (!n.has_tissue) return;
   json["stitches"] = Json::array();
   for (const Stitch& s : n.stitches) json["stitches"].push_back(stitch_json(s, n.thickness));

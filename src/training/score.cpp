@@ -211,6 +211,7 @@ void judge(const Task& task, bool broken, Result& r) {
   if (task.demonstration_only) fail("a demonstration does not pass");
   if (!r.finished) fail("not all steps were done");
   if (broken) fail("the thread broke");
+  if (r.needle && r.needle->out_of_turn > 0) fail(std::to_string(r.needle->out_of_turn) + " stitches were not made in their turn");
   if (task.has_knot() && !accepted(task, r.knot.knot_class))
     fail("the knot is a " + r.knot.knot_class + ", not a " + joined(task.accept));
   if (r.knot.knot_class != "unknot" && !r.knot.encloses_post) fail("the knot does not enclose the post");

@@ -60,6 +60,7 @@ constexpr std::array kMeasures = {
     MeasureName{Measure::needle_takes, "needle-takes", "-"},
     MeasureName{Measure::needle_drops, "needle-drops", "-"},
     MeasureName{Measure::needle_present, "needle-present", "m"},
+    MeasureName{Measure::stitch_order, "stitch-order", "-"},
     MeasureName{Measure::stitches, "stitches", "-"},
     MeasureName{Measure::bite_inequality, "bite-inequality", "-"},
     MeasureName{Measure::bite_widest, "bite-widest", "-"},

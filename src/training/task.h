@@ -69,6 +69,7 @@ enum class Measure {
   needle_takes,
   needle_drops,
   needle_present,
+  stitch_order,
   stitches,
   bite_inequality,
   bite_widest,

@@ -31,7 +31,7 @@ Pose clamp_pose(const VesselModel& vessel, const ClampState& clamp, int which) n
   return X;
 }
 
-BloodFlow::BloodFlow(const VesselModel& vessel) : model_(vessel), line_(vessel.mesh) { line_.measure(vessel.mesh.nodes, blood_.viscosity); }
+BloodFlow::BloodFlow(const VesselModel& vessel) : model_(vessel), line_(vessel.mesh), circulation_(vessel.circulation) { line_.measure(vessel.mesh.nodes, blood_.viscosity); }
 
 void BloodFlow::take_off(BloodState& b, int which, int tool, Observation& o) const noexcept {
   if (b.off[static_cast<std::size_t>(which)] != 0) return;

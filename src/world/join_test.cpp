@@ -133,7 +133,9 @@ JoinTestReport join_test(const Model& model, const State& state, const JoinTestO
   report.area = leak.area;
   std::vector<LumenRing> rings = lumen_rings(mesh, x, 0), second = lumen_rings(mesh, x, 1);
   const double usual = 0.5 * (lumen_area(rings) + lumen_area(second));
-  rings.insert(rings.end(), second.rbegin(), second.rend());  // the second stump's run from its clamp
+  const auto held = static_cast<std::ptrdiff_t>(rings.size() / 4);  // next to the clamps, which keep a vessel at the width that it had empty
+  rings.erase(rings.begin(), rings.begin() + held);
+  rings.insert(rings.end(), second.rbegin(), second.rend() - held);  // the second stump's run from its clamp
   const Patency lumen = assess_lumen(rings, usual, blood);
   report.narrowing = lumen.narrowing;
   report.through = lumen.flow;

@@ -53,6 +53,19 @@ void read_flaps(const YamlNode& node, VesselModel& v) {
   v.wall.damping = node.quantity("damping", "1/s", Range::not_negative());
 }
 
+/// What the clamps keep out; what is not said is an artery's.
+void read_blood(const YamlNode& node, VesselModel& v) {
+  Circulation& c = v.circulation;
+  c.pressure = node.quantity("pressure", "mmHg", Range::positive());
+  c.back = node.quantity("back", "mmHg", Range::between(0.0, c.pressure));
+  c.opening = node.quantity("opening", "mmHg", Range::between(0.0, c.pressure));
+  c.cut_flow = node.quantity_or("cut_flow", "m3/s", c.cut_flow, Range::positive());
+  c.through = node.quantity_or("through", "m3/s", c.through, Range::positive());
+  if (c.downstream() <= 0.0) node.refuse("through", "less than the cut vessel gives");
+  v.slack = node.quantity_or("slack", "mmHg", 0.0, {-1e4, 0.0});
+  if (v.slack < 0.0) v.wall.memory = 40;  // a wall that lies flat has more soft ways to move than a round one: 3.5 iterations a step at rest, not 10
+}
+
 /// Two stumps of a preset in a double clamp, cut edges facing, the bar along y. Where x is least counts as the angle zero.
 void read_stumps(const std::string& root, const YamlNode& node, Model& m, VesselModel& v) {
   v.name = node.text("preset");
@@ -75,6 +88,8 @@ void read_stumps(const std::string& root, const YamlNode& node, Model& m, Vessel
   Mat3 bar;
   bar << -Vec3::UnitX(), Vec3::UnitZ(), Vec3::UnitY();
   v.clamp.X_WB = {node.vec3("centre", "mm"), Quat(bar)};
+  if (node.has("blood")) read_blood(node.map("blood"), v);
+  v.wall.tolerance = node.quantity_or("tolerance", "uN", v.wall.tolerance, {1e-8, 1e-4});
   v.cut_along = -Vec3::UnitX();
   v.lumen = true;
   v.mesh = make_stumps(s, v.clamp);

@@ -6,6 +6,7 @@
 
 #include "physics/needle_track.h"
 #include "physics/vessel_clamp.h"
+#include "physics/vessel_flow.h"
 #include "physics/vessel_wall.h"
 
 namespace filum {
@@ -23,6 +24,8 @@ struct VesselModel {
   double closed_gap = 0.0;            // [m], where it can be slid to
   TubeShape shape;                    // of each
   double radius = 0.0;                // [m], outer, as first made
+  Circulation circulation;            // that the clamps keep out
+  double slack = 0.0;                 // [Pa], transmural, as long as they do: below zero the stumps lie flat
 };
 
 }  // namespace filum

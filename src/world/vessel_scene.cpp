@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kSlideSpeed = 0.5e-3, kTurnSpeed = 1.5;  // [m/s], [rad/s], of the clamp
 constexpr std::uint32_t kCut = 2, kNext = 4;             // buttons (world/inputs.h)
+constexpr int kFalling = 125;    // steps in which an empty vein loses its pressure at the start
+constexpr double kLying = 3e-4;  // [m/s], of a wall that lies
 constexpr int kSettling = 500;  // steps at most until the tissue stands still at the start
 
 PassObservation::State state_of(const NeedleTrack& t) noexcept {
@@ -49,11 +51,25 @@ VesselState VesselScene::start(const Vec3& point) {
   VesselState s;
   s.wall = wall_.first_state();
   wall_.settle(s.wall, kSettling);
+  if (model_.slack < 0.0) fall_flat(s);
   wall_.refit(s.wall);
   s.tracks.point_before = point;
   s.clamp.gap = model_.clamp.gap;
   s.clamp.turn = model_.clamp.turn;
   return s;
+}
+
+/// The stumps as they lie with no blood in them.
+void VesselScene::fall_flat(VesselState& s) {
+  s.pressure.fill(model_.slack);
+  for (int k = 1; k <= kSettling; ++k) {
+    for (int part = 0; part < wall_.n_parts(); ++part) wall_.set_pressure(part, model_.slack * std::min(1.0, static_cast<double>(k) / kFalling));
+    wall_.refit(s.wall);
+    wall_.meet(s.wall);
+    wall_.step(s.wall);
+    if (k > kFalling + 50 && s.wall.v.colwise().norm().maxCoeff() < kLying) break;
+  }
+  s.wall.v.setZero();
 }
 
 void VesselScene::describe(TissueDescription& d) const {

@@ -43,6 +43,7 @@ class VesselScene {
   void match(const VesselState& s) noexcept { wall_.refit(s.wall); }
 
  private:
+  void fall_flat(VesselState& s);
   void move_clamp(const VesselState& s) noexcept;
 
   const VesselModel& model_;

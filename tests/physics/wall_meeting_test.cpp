@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "physics/vessel_clamp.h"
+#include "physics/vessel_leak.h"
 #include "physics/vessel_wall.h"
 
 using namespace filum;
@@ -96,6 +97,55 @@ TEST(WallMeeting, EdgesPressedTogetherStayApart) {
       EXPECT_LT(past, 15e-6);
     else
       EXPECT_GT(past, 30e-6);
+  }
+}
+
+/// A vein's wall, sucked empty and filled again: it lies flat with its walls on each other and opens to what it was. The same without contact: they pass.
+TEST(WallMeeting, AnEmptyVeinLiesFlatAndFillsAgain) {
+  TubeShape shape;
+  shape.inner_radius = 0.36e-3;
+  shape.thickness = 33e-6;
+  shape.around = 24;
+  shape.along = 8;
+  shape.length = 2.4e-3;
+  WallLaw law;
+  law.kind = WallLaw::Kind::neo_hookean;
+  law.mu = 8e3;
+  law.lambda = 1e6;
+  WallOptions options;
+  options.tolerance = 5e-6;
+  options.memory = 40;
+  for (const bool met : {true, false}) {
+    VesselWall wall(make_tube(shape), {{"wall", 33e-6, law}}, options);
+    WallState state = wall.first_state();
+    for (int i = 0; i < state.x.cols(); ++i) state.x(0, i) *= wall.mesh().slab[static_cast<std::size_t>(i)] == 0 ? 1.0 : 1.01;  // no tube is quite round
+    const auto area = [&] { return lumen_rings(wall.mesh(), state.x, 0).back().area; };
+    const double first = area();
+    const auto go = [&](double from, double to, int steps) {
+      for (int k = 1; k <= steps; ++k) {
+        wall.set_pressure(0, from + (to - from) * std::min(1.0, 2.0 * k / steps));
+        wall.refit(state);
+        if (met) wall.meet(state);
+        ASSERT_TRUE(wall.step(state).sound) << k;
+        ASSERT_TRUE(state.x.allFinite() && state.x.cwiseAbs().maxCoeff() < 3e-3) << k;
+      }
+    };
+    go(0.0, -120.0, 160);
+    const double flat = area();
+    WallMeetings across(wall.mesh(), 16e-6, 1.0);
+    across.find(wall.mesh(), SurfaceTree(face_triangles(wall.mesh()), state.x), state.x);
+    double deepest = -1.0;
+    for (int k = 0; k < across.size(); ++k) deepest = std::max(deepest, across.overlap(k, state.x));
+    EXPECT_GE(across.size(), 12) << "pairs across, or there is nothing to look at";
+    if (met) {
+      EXPECT_LT(flat, 0.35 * first);
+      EXPECT_GT(deepest, 0.0) << "its walls touch";
+      EXPECT_LT(deepest, 5e-6);
+      go(-120.0, 1067.0, 120);  // 8 mmHg
+      EXPECT_GT(area(), first);
+    } else {
+      EXPECT_GT(deepest, 30e-6) << "a wall's thickness";
+    }
   }
 }
 

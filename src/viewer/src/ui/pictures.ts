@@ -143,6 +143,27 @@ function vesselPicture(label: string, colour: string, turns: number): SVGElement
   return field(stump(-1) + stump(1) + thread, label);
 }
 
+/// The join seen along the vessel: stitches at `first` [degrees, from the left over the top] are made first, with long ends, those at `then` after them.
+function joinPicture(label: string, first: number[], then: number[]): SVGElement {
+  const at = (degrees: number, r: number) => `${(-r * Math.cos((Math.PI * degrees) / 180)).toFixed(1)} ${(-r * Math.sin((Math.PI * degrees) / 180)).toFixed(1)}`;
+  const stitch = (degrees: number, reach: number) => `<path d="M${at(degrees, 21)}L${at(degrees, reach)}" ${kThread}/><circle cx="${at(degrees, 36).split(" ")[0]}" cy="${at(degrees, 36).split(" ")[1]}" r="3.2" fill="#12324a"/>`;
+  return field(`<circle r="29" fill="#7c3b36"/><circle r="29" fill="none" stroke="#dcc8b6" stroke-width="10"/><circle r="34.5" fill="none" stroke="#5b3a34" stroke-width=".8"/>` +
+    then.map((a) => `<g opacity=".45">${stitch(a, 36)}</g>`).join("") + first.map((a) => stitch(a, 54)).join(""), label);
+}
+
+/// Two stumps held together by one thread that runs round them.
+function runningPicture(label: string): SVGElement {
+  const turns = [-26, -13, 0, 13].map((y) => `<path d="M-9 ${y}L9 ${y + 5}" ${kThread}/><path d="M9 ${y + 5}L-9 ${y + 13}" ${kThread} opacity=".35"/>`).join("");
+  return field(`<rect x="-64" y="-32" width="63" height="64" fill="#dcc8b6" stroke="#5b3a34" stroke-width=".8"/><rect x="1" y="-32" width="63" height="64" fill="#dcc8b6" stroke="#5b3a34" stroke-width=".8"/>
+    <rect x="-64" y="-27" width="128" height="9" fill="#ffffff48"/>${turns}<path d="M-9 26L9 31C16 34 22 44 20 54" ${kThread}/><path d="M-9 -26C-18 -30 -22 -42 -18 -54" ${kThread}/>`, label);
+}
+
+/// Two stumps of a vein: flat, their lumens slits.
+function veinPicture(label: string): SVGElement {
+  const stump = (end: number) => `<g transform="scale(${end} 1)"><path d="M6 -9C26 -9 34 -17 64 -18V18C34 17 26 9 6 9Z" fill="#8d7fa8" stroke="#4c3f63" stroke-width=".8"/><ellipse cx="6" rx="3" ry="9.5" fill="#4c2f4a" stroke="#8d7fa8" stroke-width="1.6"/><path d="M42 -23H48V23H42Z" fill="#METAL" stroke="#2b333b" stroke-width=".6"/></g>`;
+  return field(stump(-1) + stump(1) + `<path d="M-18 -6C-28 -22 -22 -36 -10 -42M-18 -6H14C22 -6 24 -20 25 -27" ${kThread}/>${needle(29, -31, 60, 0.7)}`, label);
+}
+
 /// A latex card: a cut with `stitches` across it, or without a cut and with marks round the clock.
 function cardPicture(label: string, stitches: number): SVGElement {
   const across = Array.from({ length: stitches }, (_, k) => `<path d="M-9 ${(80 * (k + 0.5)) / stitches - 40}h18" ${kThread}/>`).join("");
@@ -165,6 +186,10 @@ const kScenes: Record<string, (title: string) => SVGElement> = {
   "vessel-stitch": (title) => vesselPicture(title, "#dcc8b6", 0),
   "stitch-throw": (title) => vesselPicture(title, "#dcc8b6", 1),
   "stitch-knot": (title) => vesselPicture(title, "#dcc8b6", 3),
+  "anastomosis-vein": veinPicture,
+  "triangulation-120": (title) => joinPicture(title, [90, 210, 330], [30, 150, 270]),
+  "posterior-wall-first": (title) => joinPicture(title, [225, 270, 315], [0, 45, 90, 135, 180]),
+  "continuous-suture": runningPicture,
   "card-stitches": (title) => cardPicture(title, 2),
   "ten-stitches": (title) => cardPicture(title, 10),
   "needle-course": (title) => cardPicture(title, 0),

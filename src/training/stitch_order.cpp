@@ -1,0 +1,129 @@
+#include "training/stitch_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "training/stitch_knot.h"
+
+namespace filum {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+double turn_from(double a, double b) { return std::remainder(b - a, kTurn); }
+
+bool lost(const PassObservation& p) { return p.state == PassObservation::State::pulled_out || p.state == PassObservation::State::torn; }
+
+}  // namespace
+
+StitchOrder::StitchOrder(const std::vector<NeedleGoal>& goals, const TissueDescription& tissue) : goals_(goals), tissue_(tissue), filled_(goals.size(), 0) {
+  tissue_.triangles.clear();  // places only
+  tissue_.rest.resize(3, 0);
+  made_.reserve(kMaxPasses);
+}
+
+bool StitchOrder::made(int goal) const { return filled_[static_cast<std::size_t>(goal)] >= rule(goal).count; }
+
+int StitchOrder::turn() const {
+  for (std::size_t g = 0; g < goals_.size(); ++g)
+    if (goals_[g].kind == NeedleGoal::Kind::stitch && !made(static_cast<int>(g))) return static_cast<int>(g);
+  return -1;
+}
+
+/// Of a running thread: one step on from the last stitch, the way it has gone so far.
+bool StitchOrder::follows(int goal, const Made& m) const {
+  const StitchRule& r = rule(goal);
+  const Made *last = nullptr, *before = nullptr;
+  for (const Made& other : made_) {
+    if (other.goal < 0) continue;
+    before = last;
+    last = &other;
+  }
+  if (last == nullptr) return true;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const double step = turn_from(last->angle[side], m.angle[side]);
+    if (std::abs(std::abs(step) - r.apart) > r.within) return false;
+    if (last->goal == goal && before != nullptr && step * turn_from(before->angle[side], last->angle[side]) < 0.0) return false;
+  }
+  return true;
+}
+
+bool StitchOrder::fits(int goal, const Made& m) const {
+  const StitchRule& r = rule(goal);
+  for (const double angle : m.angle) {
+    const double in = angle - r.from - kTurn * std::floor((angle - r.from) / kTurn);
+    if (r.span < kTurn && in > r.span) return false;
+  }
+  if (r.running) return follows(goal, m);
+  for (const Made& other : made_) {
+    if (&other == &m) continue;
+    const bool stay = other.goal >= 0 && other.goal < goal && rule(other.goal).count == 1;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double between = std::abs(turn_from(other.angle[side], m.angle[side]));
+      if (r.apart > 0.0 && stay && std::abs(between - r.apart) > r.within) return false;
+      if (between < r.clear) return false;
+    }
+  }
+  return true;
+}
+
+void StitchOrder::take(const Made& m, double time, std::vector<TaskEvent>& events) {
+  int goal = turn();
+  made_.push_back(m);
+  if (goal < 0) return;  // more than asked for
+  if (!fits(goal, made_.back())) {
+    ++out_of_turn_;
+    events.push_back({time, "stitch-out-of-turn", -1, m.angle[0], "rad", {}});
+    return;
+  }
+  made_.back().goal = goal;
+  ++filled_[static_cast<std::size_t>(goal)];
+  for (Made& waits : made_) {  // its turn may have come
+    goal = turn();
+    if (goal < 0) return;
+    if (waits.goal >= 0 || !fits(goal, waits)) continue;
+    waits.goal = goal;
+    ++filled_[static_cast<std::size_t>(goal)];
+  }
+}
+
+void StitchOrder::observe(const Observation& o, std::vector<TaskEvent>& events) {
+  const TissueObservation& t = o.tissue;
+  const auto pass = [&](int k) -> const PassObservation& { return t.passes[static_cast<std::size_t>(k)]; };
+  for (; next_ < t.n_passes; ++next_) {
+    const PassObservation& p = pass(next_);
+    if (lost(p)) continue;
+    if (!p.out || p.state != PassObservation::State::thread) return;
+    if (half_ < 0 || lost(pass(half_)) || pass(half_).side == p.side) {
+      half_ = next_;
+      continue;
+    }
+    Made m{half_, next_, {}, -1};
+    for (const int k : {half_, next_}) m.angle[static_cast<std::size_t>(pass(k).side != 0)] = angle_around(tissue_, 0.5 * (pass(k).entry_rest + pass(k).exit_rest));
+    half_ = -1;
+    take(m, o.time, events);
+  }
+}
+
+bool StitchOrder::runs_on(int goal, const Observation& o) const {
+  const auto arc = [&](int pass) { return o.tissue.passes[static_cast<std::size_t>(pass)].arc; };
+  int start = -1;
+  for (const Made& m : made_)
+    if (m.goal >= 0 && m.goal < goal) start = m.first;
+  ThreadPart piece;
+  const std::vector<StitchKnot> knots = knots_in_tissue(o, 1);
+  for (const Made& m : made_) {
+    if (m.goal != goal) continue;
+    if (start < 0) start = m.first;
+    if (arc(start) < 0.0) return false;
+    piece = piece_at(o, arc(start));
+    for (const int k : {m.first, m.second}) {
+      if (arc(k) < 0.0 || piece_at(o, arc(k)).first != piece.first) return false;
+      if (std::any_of(knots.begin(), knots.end(), [&](const StitchKnot& knot) { return knot.holds(arc(k)); })) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace filum
