@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "training/needle_task.h"
 
 namespace filum {
 namespace {
@@ -54,6 +55,27 @@ TEST(Task, TheTasksOfTheCurriculumLoad) {
     for (const RubricItem& item : task.rubric) EXPECT_FALSE(item.source.empty()) << item.title;
     for (const TaskStep& step : task.steps) EXPECT_FALSE(step.hint.empty()) << step.name;
   }
+}
+
+TEST(Task, TheAnastomosisAsksForEachOfEightStitchesTiedAndCut) {
+  const std::string name = "anastomosis-8";
+  const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + name + "/task.yaml");
+  EXPECT_EQ(task.name, name);
+  ASSERT_TRUE(task.needle);
+  const auto& goals = task.needle->goals;
+  ASSERT_EQ(goals.size(), 1u + 3u * 8u);
+  for (int k = 1; k <= 8; ++k) {
+    const auto at = [&](int i) -> const NeedleGoal& { return goals[static_cast<std::size_t>(3 * k - 2 + i)]; };
+    EXPECT_EQ(at(0).kind, NeedleGoal::Kind::stitch);
+    EXPECT_EQ(at(0).stitch.count, 1);
+    EXPECT_EQ(at(1).kind, NeedleGoal::Kind::tie);
+    EXPECT_EQ(at(2).kind, NeedleGoal::Kind::cut);
+    for (int i = 1; i < 3; ++i) EXPECT_EQ(at(i).passes, 2 * k);
+    EXPECT_EQ(at(1).throws, 3);
+  }
+  EXPECT_NEAR(task.max_total(), 100.0, 1e-12);
+  EXPECT_GT(task.needle->lapses.loose_gap, 0.0);
+  for (const RubricItem& item : task.rubric) EXPECT_FALSE(item.source.empty()) << item.title;
 }
 
 TEST(Task, ReadsUnitsIntoSi) {

@@ -1,0 +1,16 @@
+#!/bin/bash
+# The demonstration of one stitch with its whole knot, by device poses only: a square knot that holds both bites and stays when both ends are
+# cut, no torn wall, no broken thread; its recording replays bit for bit. Usage: stitch_knot_demo_test.sh FILUM ROOT
+filum=$1 root=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "stitch_knot_demo_test: $*"; head -c 3000 "$work"/run.json; exit 1; }
+"$filum" run stitch-knot --root "$root" --input demo --record "$work/knot.filum" --json >"$work/run.json" 2>"$work/run.err" || fail "run: $(cat "$work/run.err")"
+node -e '
+  const d = JSON.parse(require("fs").readFileSync(process.argv[1])), s = d.stitches;
+  const count = (name) => d.events.filter((e) => e.name === name).length;
+  const tied = s.length === 1 && s[0].knot === "square" && s[0].throws === 2 && s[0].tail_mm > 0.3 && s[0].tail_mm < 3;
+  const clean = count("cut") === 2 && count("tear") === 0 && count("thread-break") === 0;
+  if (!d.finished || !d.passed || !tied || !clean) { console.error(d.finished, d.passed, s, d.events); process.exit(1); }
+' "$work/run.json" || fail "not the knot asked for"
+"$filum" replay "$work/knot.filum" --json | grep -q '"identical": *true' || fail "replay differs"
