@@ -63,7 +63,6 @@ void read_blood(const YamlNode& node, VesselModel& v) {
   c.through = node.quantity_or("through", "m3/s", c.through, Range::positive());
   if (c.downstream() <= 0.0) node.refuse("through", "less than the cut vessel gives");
   v.slack = node.quantity_or("slack", "mmHg", 0.0, {-1e4, 0.0});
-  if (v.slack < 0.0) v.wall.memory = 40;  // a wall that lies flat has more soft ways to move than a round one: 3.5 iterations a step at rest, not 10
 }
 
 /// Two stumps of a preset in a double clamp, cut edges facing, the bar along y. Where x is least counts as the angle zero.

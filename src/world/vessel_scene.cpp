@@ -62,11 +62,14 @@ VesselState VesselScene::start(const Vec3& point) {
 /// The stumps as they lie with no blood in them.
 void VesselScene::fall_flat(VesselState& s) {
   s.pressure.fill(model_.slack);
+  WallOptions patient = model_.wall;
+  patient.max_iterations = 60;  // steps left unbalanced on the way go on swinging at rest
+  VesselWall wall(model_.mesh, model_.layers, patient);
   for (int k = 1; k <= kSettling; ++k) {
-    for (int part = 0; part < wall_.n_parts(); ++part) wall_.set_pressure(part, model_.slack * std::min(1.0, static_cast<double>(k) / kFalling));
-    wall_.refit(s.wall);
-    wall_.meet(s.wall);
-    wall_.step(s.wall);
+    for (int part = 0; part < wall.n_parts(); ++part) wall.set_pressure(part, model_.slack * std::min(1.0, static_cast<double>(k) / kFalling));
+    wall.refit(s.wall);
+    wall.meet(s.wall);
+    wall.step(s.wall);
     if (k > kFalling + 50 && s.wall.v.colwise().norm().maxCoeff() < kLying) break;
   }
   s.wall.v.setZero();
