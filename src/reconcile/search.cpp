@@ -308,14 +308,20 @@ Structure Search::structure(const Fit& f) const {
   return s;
 }
 
+/// The largest set whose further effects each bring what a further effect must: what others take beyond it is as likely noise.
+const Fit& Search::fullest() const {
+  const Fit* now = &base_;
+  for (std::size_t size = 1; size <= static_cast<std::size_t>(options_.rules.most_effects); ++size)
+    if (const Fit* next = best(size); next != nullptr && (size == 1 ? next->chi2 < now->chi2 : bic(*next) < bic(*now) - options_.rules.pair_evidence)) now = next;
+  return *now;
+}
+
 double Search::explained(const Fit& f) const {
-  const Fit* least = &base_;
-  for (const Fit& c : candidates_)
-    if (c.chi2 < least->chi2) least = &c;
+  const Fit* least = &fullest();
   const Structure left = structure(*least);
   const double rest = left.z > 3.0 ? left.excess : 0.0;
   const double all = base_.chi2 - least->chi2 + rest;
-  return all > 0.0 ? (base_.chi2 - f.chi2) / all : 0.0;
+  return all > 0.0 ? std::min(1.0, (base_.chi2 - f.chi2) / all) : 0.0;
 }
 
 std::vector<Fit> Search::other_forms(const Fit& winner, double tie) const {

@@ -26,7 +26,7 @@ class Search {
   double dispersion() const { return dispersion_; }
   /// With lines of free phase in every record at what their phases cost (see search.cpp), not at log n an amplitude.
   double bic(const Fit& f) const;
-  /// Share of what is missing that a fit explains; `rest` is the structure left in the best fit of all.
+  /// Share of what is missing that a fit explains; what is missing is what the largest set that earns its place takes away, and the structure left.
   double explained(const Fit& f) const;
   /// The same set with one effect in another of its forms, where the data do not tell the two apart (within `tie` of BIC).
   std::vector<Fit> other_forms(const Fit& winner, double tie) const;
@@ -48,6 +48,7 @@ class Search {
   Fit separate(const Fit& from, double frequency) const;
   void keep(std::vector<Fit> fits);
   void refresh();
+  const Fit& fullest() const;
   bool worth_more(const Fit& f) const;
   double preference(const Fit& f) const;
 

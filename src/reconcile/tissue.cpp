@@ -314,10 +314,9 @@ std::vector<Form> Tissue::forms() const {
   };
   drain(0, "radial drainage", Dr);
   drain(1, "drainage through the height", Dh);
-  if (sizes_.size() > 1) {  // of one size alone these are the relaxation of a solid under another name
-    drain(2, "slowest mode alone, lateral size", Dr, 1.0 / 5.783);
-    drain(3, "slowest mode alone, height", Dh, 1.0 / 9.870);
-  }
+  // of one size alone these are the relaxation of a solid under another name
+  if (sheared_ || across.size() > 1) drain(2, "slowest mode alone, lateral size", Dr, 1.0 / 5.783);
+  if (sheared_ || along.size() > 1) drain(3, "slowest mode alone, height", Dh, 1.0 / 9.870);
   const double pull = 0.05 * force_ / area_;
   const ParamSpec traction{"pull_off", "Pa", 1e-2 * pull, 30 * pull, true}, gap{"gap", "m", 1e-3 * travel_, travel_, true};
   f.push_back({Effect::contact_adhesion, 0, "elastic until the traction is passed", {traction}, {{pull}, {3 * pull}}, false});

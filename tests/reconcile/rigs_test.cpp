@@ -124,8 +124,8 @@ TEST(Rigs, DrainageIsKnownByTheSizeThatVaries) {
       if (f.effect == Effect::poroelastic_drainage && f.one_size) kinds.insert(f.kind);
     return kinds;
   };
-  EXPECT_EQ(unknown({{5e-3, 5e-3}, {5e-3, 2e-3}}, "compression"), (std::set<int>{0, 2}));  // through the sides: the width is the same
-  EXPECT_EQ(unknown({{5e-3, 5e-3}, {9e-3, 5e-3}}, "compression"), (std::set<int>{1, 3}));  // through the height
+  EXPECT_EQ(unknown({{5e-3, 5e-3}, {5e-3, 2e-3}}, "compression"), std::set<int>{0});  // through the sides: the width is the same; its slowest mode alone is left out
+  EXPECT_EQ(unknown({{5e-3, 5e-3}, {9e-3, 5e-3}}, "compression"), std::set<int>{1});  // through the height
   EXPECT_EQ(unknown({{5e-3, 5e-3}, {9e-3, 2e-3}}, "compression"), std::set<int>{});
   EXPECT_EQ(unknown({{5e-3, 5e-3}, {5e-3, 2e-3}}, "shear"), std::set<int>{});  // shear keeps the volume: what relaxes there is the solid
 }
