@@ -183,7 +183,7 @@ function tipPicture(label: string, objects: boolean): SVGElement {
 const kScenes: Record<string, (title: string) => SVGElement> = {
   "knot-throw": (title) => knotPicture("overhand", title, true),
   "artery-stitch": (title) => vesselPicture(title, "#cf8378", 0),
-  "anastomosis-8": (title) => joinPicture(title, [90, 270], [45, 135, 180, 225, 315, 0]),
+  "anastomosis-8": (title) => joinPicture(title, [0, 180], [45, 90, 135, 225, 270, 315]),
   "vessel-stitch": (title) => vesselPicture(title, "#dcc8b6", 0),
   "stitch-throw": (title) => vesselPicture(title, "#dcc8b6", 1),
   "stitch-knot": (title) => vesselPicture(title, "#dcc8b6", 3),
