@@ -9,12 +9,14 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/inputs.h"
 #include "cli/options.h"
 #include "cli/setup.h"
 #include "evidence/wild_hands.h"
 #include "haptics/haptic_loop.h"
+#include "haptics/scene_eyes.h"
 #include "world/model.h"
 #include "world/state.h"
 
@@ -37,14 +39,20 @@ const std::vector<std::string> kWildTasks = {"knot-square", "needle-loading", "c
 /// The task as its demonstration drives it.
 DrivenTask open_task(const std::string& root, const std::string& task) {
   struct Hands {
-    explicit Hands(std::vector<std::unique_ptr<Device>> devices) : loop(std::move(devices)) {}
+    explicit Hands(InputDevices inputs) : demonstrator(inputs.demonstrator), loop(std::move(inputs.devices)) {}
+    Demonstrator* demonstrator;
+    std::optional<SceneEyes> eyes;
     HapticLoop loop;
     std::int64_t next_us = 0;
   };
-  auto hands = std::make_shared<Hands>(open_inputs("demo", root, task).devices);
+  auto hands = std::make_shared<Hands>(open_inputs("demo", root, task));
   DrivenTask driven;
   driven.model = load_setup(root, task).model;
   driven.inputs = [hands](const World& world) {
+    if (!hands->eyes && hands->demonstrator != nullptr) {
+      hands->eyes.emplace(world.observation(), world.description());
+      hands->demonstrator->look_through(&*hands->eyes);
+    }
     const auto now_us =
         static_cast<std::int64_t>((world.observation().time + 0.5 * world.description().dt) * 1e6);
     for (; hands->next_us <= now_us; hands->next_us += kTick) hands->loop.tick(hands->next_us);

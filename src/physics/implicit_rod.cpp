@@ -118,8 +118,23 @@ void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodSte
   for (ObstacleBody& b : obstacles.bodies) b.X_now = b.X_start;
   grasps.locate(memory.grasps, s);
   tethers.locate(s);
-  const double fastest = std::sqrt(s.v.leftCols(s.n).colwise().squaredNorm().maxCoeff());
-  find_near(s, memory, std::max(2.0 * material.radius, std::min(1.5 * fastest * o.dt, 40.0 * material.radius)));
+  expect_moves(s, o.dt);
+  find_near(s, memory);
+}
+
+/// Reach of the first search: as far as the velocities lead, and half as far again; where a node is led, to its goal.
+void ImplicitRod::expect_moves(const RodState& s, double dt) noexcept {
+  const double r = material.radius;
+  const auto expected = [&](int i) {
+    const double led = boundary.held.col(i).head<3>().any() ? (boundary.target.col(i).head<3>() - s.x.col(i)).norm() : 0.0;
+    return std::max({2.0 * r, std::min(1.5 * dt * s.v.col(i).norm(), 40.0 * r), 1.01 * led});
+  };
+  double here = expected(0);
+  for (int j = 0; j + 1 < s.n; ++j) {
+    const double next = expected(j + 1);
+    contact_.travel.reach[j] = std::max(here, next);
+    here = next;
+  }
 }
 
 /// Starts from where the last velocity leads, if that is better than staying: a thread led by the hand moves on much as
@@ -135,7 +150,8 @@ void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodS
       if (boundary.held(c, i)) move_(c, i) = 0.0;
   if (largest_move(move_, s.n) == 0.0) return;
   keep_lengths(s, EdgeLength::unchanged);
-  double fraction = free_fraction(s, memory, largest_move(move_, s.n));
+  contact_.travel.look_along(move_);
+  double fraction = free_fraction(s, memory);
   fit_geometry(s);
   const double before = energy(s, x_, theta_, o, 0.0);
   for (int k = 0; k < 2; ++k, fraction *= 0.5) {
@@ -145,15 +161,17 @@ void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodS
 
 /// Fraction of move_ that crosses nothing; finds the near pairs again if the move reaches beyond those known, and goes no
 /// further than they reach.
-double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept {
+double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory) noexcept {
   const StageScope stage("crossings");
+  RodTravel& travel = contact_.travel;
   double fraction = 1.0;
-  if (self_contact && length > kLongestReach * material.radius) fraction = kLongestReach * material.radius / length;
-  if (travelled_ + fraction * length > reach_) {
-    find_near(s, memory, std::max(fraction * length, 2.0 * material.radius));
+  if (self_contact) fraction = std::min(1.0, kLongestReach * material.radius / travel.farthest());
+  if (travel.within_reach() < fraction) {
+    for (int j = 0; j + 1 < s.n; ++j) travel.reach[j] = 2.0 * material.radius + fraction * travel.stride(j);
+    find_near(s, memory);
     contact_.update(x_, material.radius, contact_material, FrictionLoad::falling);
     obstacles.update(x_, material.radius, contact_material, FrictionLoad::falling);
-    fraction = contact_.overflowed() ? 0.0 : std::min(fraction, reach_ / length);
+    fraction = contact_.overflowed() ? 0.0 : std::min(fraction, travel.within_reach());
   }
   if (self_contact) fraction = std::min(fraction, contact_.free_fraction(x_, move_, material.radius));
   return std::min(fraction, obstacles.free_fraction(x_, move_, material.radius));
@@ -165,34 +183,31 @@ bool ImplicitRod::try_move(const RodState& s, double fraction, double highest, c
   x_trial_.leftCols(s.n) = x_.leftCols(s.n) + fraction * move_.leftCols(s.n).topRows<3>();
   theta_trial_.head(s.n) = theta_.head(s.n) + fraction * move_.leftCols(s.n).row(3).transpose();
   follow_reference(s.n, x_trial_, theta_trial_, geometry_);
-  const double length = fraction * largest_move(move_, s.n);
-  geometry_fits_ = energy(s, x_trial_, theta_trial_, o, length) <= highest;
+  geometry_fits_ = energy(s, x_trial_, theta_trial_, o, fraction) <= highest;
   if (!geometry_fits_) return false;
   take_reference(s.n, geometry_);
-  note_move(length);
+  contact_.travel.went(fraction);
   std::swap(x_, x_trial_);
   std::swap(theta_, theta_trial_);
   return true;
 }
 
-void ImplicitRod::note_move(double length) noexcept {
-  travelled_ += length;
-  contact_.moved(length);
-}
-
-void ImplicitRod::find_near(const RodState& s, const RodMemory& memory, double reach) noexcept {
+/// All that can come into touch while edges move within travel.reach.
+void ImplicitRod::find_near(const RodState& s, const RodMemory& memory) noexcept {
   const StageScope stage("near pairs");
-  reach_ = reach;
-  travelled_ = 0.0;
+  RodTravel& travel = contact_.travel;
+  travel.start(s.n);
   if (self_contact) {  // where strands crowd, a shorter reach leaves room for every pair
-    contact_.find_pairs(s, x_, material.radius, reach_);
-    while (contact_.overflowed() && reach_ > kLeastReach * material.radius)
-      contact_.find_pairs(s, x_, material.radius, reach_ *= 0.5);
+    contact_.find_pairs(s, x_, material.radius);
+    while (contact_.overflowed() && travel.reach.head(s.n - 1).maxCoeff() > kLeastReach * material.radius) {
+      travel.reach *= 0.5;
+      contact_.find_pairs(s, x_, material.radius);
+    }
   }
   fit_pattern(s.n);
   double body_reach = 0.0;
   for (const ObstacleBody& b : obstacles.bodies) body_reach = std::max(body_reach, (b.X_end.p - b.X_start.p).norm());
-  obstacles.find_touches(s, x_, material.radius, reach_ + 1.5 * body_reach);
+  obstacles.find_touches(s, x_, material.radius, travel.reach, 1.5 * body_reach);
   contact_.recall(memory.self);
   obstacles.recall(memory.obstacle);
 }
@@ -228,11 +243,12 @@ bool ImplicitRod::advance_boundary(const RodState& s) noexcept {
     }
   }
   if (!any) return arrived;
+  contact_.travel.look_along(boundary_move_);
   double fraction = 1.0;
   if (self_contact) fraction = contact_.free_fraction(x_, boundary_move_, material.radius);
   fraction = std::min(fraction, obstacles.free_fraction(x_, boundary_move_, material.radius));
   geometry_fits_ = false;
-  note_move(fraction * largest_move(boundary_move_, s.n));
+  contact_.travel.went(fraction);
   x_.leftCols(s.n) += fraction * boundary_move_.leftCols(s.n).topRows<3>();
   theta_.head(s.n) += fraction * boundary_move_.leftCols(s.n).row(3).transpose();
   if (fraction == 1.0) {  // exactly on target, so that rounding cannot keep the step from arriving
@@ -313,6 +329,7 @@ bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffnes
     if (length > o.longest_move) move_.leftCols(s.n) *= o.longest_move / length;
     slope_ = (gradient_.leftCols(s.n).array() * move_.leftCols(s.n).array()).sum();
     keep_lengths(s, EdgeLength::first_order);
+    contact_.travel.look_along(move_);
     return true;
   }
 }
@@ -353,7 +370,7 @@ bool ImplicitRod::newton_step(const RodState& s, const RodMemory& memory, const 
 /// 1986, with a memory of two): the first step into a new contact, whose stiffness is not in the matrix yet, need not be cut to nothing.
 bool ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   if (!(slope_ < 0.0)) return false;
-  double fraction = free_fraction(s, memory, largest_move(move_, s.n));
+  double fraction = free_fraction(s, memory);
   fit_geometry(s);
   const double before = energy(s, x_, theta_, o, 0.0), highest = std::max(before, last_energy_);
   last_energy_ = before;
@@ -372,7 +389,7 @@ void ImplicitRod::fit_geometry(const RodState& s) noexcept {
 }
 
 /// At x and theta, whose geometry is in geometry_.
-double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o, double ahead) noexcept {
+double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o, double fraction) noexcept {
   double u = elastic_energy(stiffened_, s, geometry_);
   const double rho = material.mass_per_length(), dt = o.dt;
   for (int i = 0; i < s.n; ++i) {
@@ -383,8 +400,8 @@ double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::Vect
     if (i + 1 < s.n) u += 0.5 * spin_inertia(material, s, i) * std::pow((theta[i] - s.theta[i]) / dt - s.theta_dot[i], 2);
     u -= boundary.load.col(i).head<3>().dot(x.col(i)) + boundary.load(3, i) * theta[i];
   }
-  if (self_contact) u += contact_.energy(x, s.x, material.radius, contact_material, ahead);
-  return u + obstacles.energy(x, s.x, material.radius, contact_material, ahead) + grasps.energy(x) + tethers.energy(x, o.dt);
+  if (self_contact) u += contact_.energy(x, s.x, material.radius, contact_material, fraction);
+  return u + obstacles.energy(x, s.x, material.radius, contact_material, contact_.travel, fraction) + grasps.energy(x) + tethers.energy(x, o.dt);
 }
 
 void ImplicitRod::finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {

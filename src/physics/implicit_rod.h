@@ -79,9 +79,10 @@ class ImplicitRod {
 
  private:
   void begin(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
+  void expect_moves(const RodState& s, double dt) noexcept;
   void soften_rest(RodState& s, double dt) noexcept;
   void restore_rest(RodState& s) noexcept;
-  void find_near(const RodState& s, const RodMemory& memory, double reach) noexcept;
+  void find_near(const RodState& s, const RodMemory& memory) noexcept;
   void fit_pattern(int n) noexcept;
   bool advance_boundary(const RodState& s) noexcept;
   void assemble_gradient(const RodState& s, const RodStepOptions& o) noexcept;
@@ -92,12 +93,11 @@ class ImplicitRod {
   void keep_lengths(const RodState& s, EdgeLength which) noexcept;
   bool newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   void predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
-  double free_fraction(const RodState& s, const RodMemory& memory, double length) noexcept;
+  double free_fraction(const RodState& s, const RodMemory& memory) noexcept;
   bool try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept;
   bool advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
-  void note_move(double length) noexcept;
   void fit_geometry(const RodState& s) noexcept;
-  double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o, double ahead) noexcept;
+  double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o, double fraction) noexcept;
   void finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept;
 
   RodContact contact_;
@@ -113,8 +113,6 @@ class ImplicitRod {
   RodMaterial stiffened_;                  // the material with what internal friction adds in this step
   Eigen::Matrix4Xd rest_kappa_;            // rest shape proper, while the step works with the softened one
   Eigen::VectorXd rest_twist_;
-  double reach_ = 0.0;   // [m], how far nodes may still move before the near pairs must be found again
-  double travelled_ = 0.0;
   double slope_ = 0.0;          // [J], of the sum along the Newton direction
   double last_energy_ = 0.0;    // [J], at the iterate before, with the loads of then
   bool geometry_fits_ = false;  // geometry_ is that of x_ and theta_

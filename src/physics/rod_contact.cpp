@@ -35,6 +35,12 @@ Vec3 trial_bristle(const RodPair& p, const Points& x, const Points& x_start) noe
   return xi - xi.dot(p.normal) * p.normal;
 }
 
+/// Two boxes have no point in common.
+template <class Corner>
+bool apart(const Corner& low_a, const Corner& high_a, const Corner& low_b, const Corner& high_b) noexcept {
+  return (low_a - high_b).cwiseMax(low_b - high_a).maxCoeff() > 0.0;
+}
+
 }  // namespace
 
 PairPotential squeeze(double overlap, double radius, double stiffness) noexcept {
@@ -73,62 +79,69 @@ double conservative_advance(const Vec3 ends[4], const Vec3 moves[4], double keep
 }
 
 RodContact::RodContact(int node_capacity, int pair_capacity)
-    : edge_low_(Eigen::Matrix4Xd::Zero(4, node_capacity)), edge_high_(edge_low_),
+    : travel(node_capacity), edge_low_(Eigen::Matrix4Xd::Zero(4, node_capacity)), edge_high_(edge_low_),
       low_(Eigen::Matrix4Xd::Zero(4, node_capacity / kChunk + 1)), high_(low_) {
   pairs_.reserve(static_cast<std::size_t>(pair_capacity));
   known_.reserve(static_cast<std::size_t>(pair_capacity));
   pattern_.reserve(static_cast<std::size_t>(pair_capacity));
   arc_.reserve(static_cast<std::size_t>(node_capacity));
+  near_chunks_.reserve(static_cast<std::size_t>(low_.cols()));
 }
 
-void RodContact::find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept {
-  std::swap(pairs_, known_);
-  pairs_.clear();
-  travelled_ = 0.0;
-  overflowed_ = false;
+void RodContact::box_edges(const RodState& s, const Points& x, double radius) noexcept {
   const int edges = s.n - 1;
   arc_.assign(1, 0.0);
-  for (int j = 0; j < edges; ++j) arc_.push_back(arc_.back() + s.rest_length[j]);
   for (int j = 0; j < edges; ++j) {
-    edge_low_.col(j).head<3>() = x.col(j).cwiseMin(x.col(j + 1));
-    edge_high_.col(j).head<3>() = x.col(j).cwiseMax(x.col(j + 1));
+    arc_.push_back(arc_.back() + s.rest_length[j]);
+    const double room = radius + travel.reach[j];
+    edge_low_.col(j).head<3>() = x.col(j).cwiseMin(x.col(j + 1)).array() - room;
+    edge_high_.col(j).head<3>() = x.col(j).cwiseMax(x.col(j + 1)).array() + room;
   }
-  const int chunks = (edges + kChunk - 1) / kChunk;
-  for (int c = 0; c < chunks; ++c) {
-    const int begin = c * kChunk, count = std::min(kChunk, edges - begin);
-    low_.col(c) = edge_low_.middleCols(begin, count).rowwise().minCoeff();
-    high_.col(c) = edge_high_.middleCols(begin, count).rowwise().maxCoeff();
+  for (int begin = 0; begin < edges; begin += kChunk) {
+    const int count = std::min(kChunk, edges - begin);
+    low_.col(begin / kChunk) = edge_low_.middleCols(begin, count).rowwise().minCoeff();
+    high_.col(begin / kChunk) = edge_high_.middleCols(begin, count).rowwise().maxCoeff();
   }
-  const double near = 2.0 * radius + 2.0 * reach;
-  const auto apart = [&](const auto& low_a, const auto& high_a, const auto& low_b, const auto& high_b) {
-    return (low_a - high_b).cwiseMax(low_b - high_a).maxCoeff() > near;
-  };
+}
+
+void RodContact::find_pairs(const RodState& s, const Points& x, double radius) noexcept {
+  std::swap(pairs_, known_);
+  pairs_.clear();
+  travel.start(s.n);
+  overflowed_ = false;
+  box_edges(s, x, radius);
+  const int edges = s.n - 1, chunks = (edges + kChunk - 1) / kChunk;
   for (int a = 0; a < chunks; ++a) {
-    for (int b = a; b < chunks; ++b) {
-      if (apart(low_.col(a), high_.col(a), low_.col(b), high_.col(b))) continue;
-      for (int i = a * kChunk; i < std::min(edges, (a + 1) * kChunk); ++i) {
-        if (apart(edge_low_.col(i), edge_high_.col(i), low_.col(b), high_.col(b))) continue;
-        for (int j = std::max(i + 2, b * kChunk); j < std::min(edges, (b + 1) * kChunk); ++j) {
-          if (apart(edge_low_.col(i), edge_high_.col(i), edge_low_.col(j), edge_high_.col(j))) continue;
-          if (arc_[j] - arc_[i + 1] < 4.0 * radius || s.alive[i] == 0 || s.alive[j] == 0) continue;
-          const double distance = measure(x, i, j).distance;
-          if (distance > near) continue;
-          if (pairs_.size() == pairs_.capacity()) {
-            overflowed_ = true;
-            continue;
-          }
-          RodPair& p = pairs_.emplace_back();
-          p.i = i;
-          p.j = j;
-          p.distance = distance;
-          p.joined = distance < kJoin * radius;
-        }
-      }
+    near_chunks_.clear();
+    for (int b = a; b < chunks; ++b)
+      if (!apart(low_.col(a), high_.col(a), low_.col(b), high_.col(b))) near_chunks_.push_back(b);
+    for (int i = a * kChunk; i < std::min(edges, (a + 1) * kChunk); ++i) {
+      if (s.alive[i] == 0) continue;
+      for (const int b : near_chunks_)
+        if (!apart(edge_low_.col(i), edge_high_.col(i), low_.col(b), high_.col(b))) find_partners(s, x, radius, i, b);
     }
   }
-  std::sort(pairs_.begin(), pairs_.end(), [](const RodPair& p, const RodPair& q) { return std::tie(p.i, p.j) < std::tie(q.i, q.j); });
   keep_loads();
   compare_pattern();
+}
+
+/// Pairs of edge i with later ones of a chunk.
+void RodContact::find_partners(const RodState& s, const Points& x, double radius, int i, int chunk) noexcept {
+  for (int j = std::max(i + 2, chunk * kChunk); j < std::min(s.n - 1, (chunk + 1) * kChunk); ++j) {
+    if (apart(edge_low_.col(i), edge_high_.col(i), edge_low_.col(j), edge_high_.col(j))) continue;
+    if (arc_[j] - arc_[i + 1] < 4.0 * radius || s.alive[j] == 0) continue;
+    const double distance = measure(x, i, j).distance;
+    if (distance > 2.0 * radius + travel.reach[i] + travel.reach[j]) continue;
+    if (pairs_.size() == pairs_.capacity()) {
+      overflowed_ = true;
+      return;
+    }
+    RodPair& p = pairs_.emplace_back();
+    p.i = i;
+    p.j = j;
+    p.distance = distance;
+    p.joined = distance < kJoin * radius;
+  }
 }
 
 void RodContact::keep_loads() noexcept {
@@ -201,7 +214,7 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
     p.s = c.s;
     p.t = c.t;
     p.distance = c.distance;
-    p.measured_at = travelled_;
+    p.measured_at = gone(p);
     p.normal = c.d / c.distance;
     p.force = -pair_potential(c.distance, radius, m.stiffness).slope;
     p.load = load == FrictionLoad::anew ? p.force : std::min(p.load, p.force);
@@ -209,10 +222,10 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
   }
 }
 
-double RodContact::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double ahead) const noexcept {
+double RodContact::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double fraction) const noexcept {
   double u = 0.0;
   for (const RodPair& p : pairs_) {
-    if (at_least(p) - 2.0 * ahead > 2.0 * radius) continue;
+    if (at_least(p) - fraction * stride(p) > 2.0 * radius) continue;
     u += pair_potential(measure(x, p.i, p.j).distance, radius, m.stiffness).energy;
     if (p.force > 0.0) u += coulomb(trial_bristle(p, x, x_start), p.normal, p.load, m.friction, m.stick(m.friction, p.load)).energy;
   }
@@ -269,20 +282,21 @@ double RodContact::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, 
   double fraction = 1.0;
   const auto keep = [&](double distance) { return std::min(1.7 * radius, 0.8 * distance); };
   for (const RodPair& p : pairs_) {
+    const auto too_slow = [&](double distance, double approach) {  // to come nearer than allowed
+      return approach <= distance - keep(distance);
+    };
+    if (too_slow(at_least(p), fraction * stride(p))) continue;
     const int node[4] = {p.i, p.i + 1, p.j, p.j + 1};
     Vec3 ends[4], moves[4];
-    for (int k = 0; k < 4; ++k) moves[k] = fraction * move.col(node[k]).head<3>();
+    for (int k = 0; k < 4; ++k) {
+      ends[k] = x.col(node[k]);
+      moves[k] = fraction * move.col(node[k]).head<3>();
+    }
+    const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
     double fastest = 0.0;
     for (int a = 0; a < 2; ++a)
-      for (int b = 2; b < 4; ++b) fastest = std::max(fastest, (moves[a] - moves[b]).squaredNorm());
-    const auto too_slow = [&](double distance) {  // to come nearer than allowed
-      const double room = distance - keep(distance);
-      return room >= 0.0 && fastest <= room * room;
-    };
-    if (too_slow(at_least(p))) continue;
-    for (int k = 0; k < 4; ++k) ends[k] = x.col(node[k]);
-    const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
-    if (too_slow(distance)) continue;
+      for (int b = 2; b < 4; ++b) fastest = std::max(fastest, (moves[a] - moves[b]).norm());
+    if (too_slow(distance, fastest)) continue;
     fraction *= conservative_advance(ends, moves, keep(distance));
   }
   return fraction;

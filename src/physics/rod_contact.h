@@ -21,6 +21,7 @@
 #include "base/pose.h"
 #include "physics/elastic_rod.h"
 #include "physics/friction.h"
+#include "physics/rod_travel.h"
 
 namespace filum {
 
@@ -46,7 +47,7 @@ struct RodPair {
   double s = 0, t = 0;                // closest points
   Vec3 normal = Vec3::UnitX();        // unit, from edge j to edge i
   double distance = 1;                // [m], of the axes when they were last measured
-  double measured_at = 0;             // [m], how far nodes had moved by then since the pairs were found
+  double measured_at = 0;             // [m], how far both edges had gone by then since the pairs were found
   double force = 0;                   // [N], normal
   double load = 0;                    // [N], normal force by which friction goes
   bool joined = false;                // has its blocks in the matrix: near enough to touch soon
@@ -65,10 +66,14 @@ class RodContact {
  public:
   RodContact(int node_capacity, int pair_capacity);
 
-  /// Collects all pairs of edges that can come within one diameter while every node moves at most `reach` [m]. Edges of the
-  /// same strand closer than two diameters along it are left out. Only pairs that may touch soon are joined, that is, take
+  /// How far edges may go, have gone and would go. Its user says so of every move of the nodes since find_pairs(): most pairs are too far apart
+  /// to have come into touch by then, and are not measured anew.
+  RodTravel travel;
+
+  /// Collects all pairs of edges, sorted, that can come within one diameter while each edge moves at most travel.reach [m], and starts the
+  /// travel. Edges of the same strand closer than two diameters along it are left out. Only pairs that may touch soon are joined, that is, take
   /// part in the matrix: most are there only to bound the move. Pairs known before keep their load of friction, others have none.
-  void find_pairs(const RodState& s, const Points& x, double radius, double reach) noexcept;
+  void find_pairs(const RodState& s, const Points& x, double radius) noexcept;
   const std::vector<RodPair>& pairs() const noexcept { return pairs_; }
   bool overflowed() const noexcept { return overflowed_; }
 
@@ -83,38 +88,39 @@ class RodContact {
   /// Writes the bristles of touching pairs for the next step (capacity reserved by the caller).
   void remember(std::vector<ContactBristle>& memory) const noexcept;
 
-  /// Must be told of every move of the nodes since find_pairs(): the farthest that any of them went [m]. Most pairs are too far apart to have
-  /// come into touch by then, and are not measured anew.
-  void moved(double length) noexcept { travelled_ += length; }
   /// Distances, normals, normal forces and loads of friction at x; the loads then stay fixed in energy() until the next call.
   void update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept;
-  /// Potential [J] at x, no node of which is farther than `ahead` [m] from where it was at the last update (friction with the normal forces of
+  /// Potential [J] at x, `fraction` of the move in question from where the nodes were at the last update (friction with the normal forces of
   /// that).
-  double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double ahead) const noexcept;
+  double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double fraction) const noexcept;
   /// Adds the gradient, then the stiffness, at the configuration of the last update.
   void add_gradient(const Points& x, const Points& x_start, const ContactMaterial& m, Eigen::Matrix4Xd& gradient) noexcept;
   void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
                      BlockCholesky& matrix) const noexcept;
 
-  /// Largest fraction of `move` (4 x n, only the first three rows count) that provably crosses nothing.
+  /// Largest fraction of `move` (4 x n, only the first three rows count; the travel looks along it) that provably crosses nothing.
   double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;
 
   double smallest_distance(const Points& x) const noexcept;  // [m], of the axes at x, among the pairs; infinity if there is none
   int n_touching(double radius) const noexcept;
 
  private:
+  void box_edges(const RodState& s, const Points& x, double radius) noexcept;
+  void find_partners(const RodState& s, const Points& x, double radius, int i, int chunk) noexcept;
   void keep_loads() noexcept;
   void compare_pattern() noexcept;
-  double at_least(const RodPair& p) const noexcept { return p.distance - 2.0 * (travelled_ - p.measured_at); }  // [m], distance of the axes
+  double gone(const RodPair& p) const noexcept { return travel.gone(p.i) + travel.gone(p.j); }
+  double stride(const RodPair& p) const noexcept { return travel.stride(p.i) + travel.stride(p.j); }
+  double at_least(const RodPair& p) const noexcept { return p.distance - (gone(p) - p.measured_at); }  // [m], distance of the axes
   void join(RodPair& p, bool touches) noexcept;
   void add_tilt(const RodPair& p, const Points& x, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
   void add_block(const RodPair& p, const Mat3& k, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
 
   std::vector<RodPair> pairs_, known_;
   std::vector<std::pair<int, int>> pattern_;  // edges of the last connect()
-  Eigen::Matrix4Xd edge_low_, edge_high_, low_, high_;  // [m], boxes of edges and of chunks of them; the fourth row is 0
+  Eigen::Matrix4Xd edge_low_, edge_high_, low_, high_;  // [m], of all that edges, and chunks of them, can reach; the fourth row is 0
   std::vector<double> arc_;
-  double travelled_ = 0.0;  // [m], since find_pairs()
+  std::vector<int> near_chunks_;
   bool overflowed_ = false;
   bool pattern_stale_ = false;
 };

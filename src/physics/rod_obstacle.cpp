@@ -46,7 +46,7 @@ void RodObstacles::collect(int edge, int obstacle, double s) noexcept {
   t.s = s;
 }
 
-void RodObstacles::find_touches(const RodState& s, const Points& x, double radius, double reach) noexcept {
+void RodObstacles::find_touches(const RodState& s, const Points& x, double radius, const Eigen::VectorXd& reach, double body_reach) noexcept {
   std::swap(touches_, known_);
   touches_.clear();
   a_W_.resize(obstacles.size());
@@ -58,22 +58,24 @@ void RodObstacles::find_touches(const RodState& s, const Points& x, double radiu
   }
   double arc = s.arc_start;
   for (int j = 0; j + 1 < s.n; arc += s.rest_length[j++]) {
-    if (s.alive[j] == 0) continue;
+    const bool parted = s.alive[j] == 0;  // its first node still ends a piece that may lie on the sheet
+    const double margin = radius + reach[j] + body_reach;
     const Vec3 low = x.col(j).cwiseMin(x.col(j + 1)), high = x.col(j).cwiseMax(x.col(j + 1));
     for (int k = 0; k < static_cast<int>(obstacles.size()); ++k) {
       const Obstacle& o = obstacles[k];
       if (arc + s.rest_length[j] > o.ignore_from && arc < o.ignore_to) continue;
       if (o.kind == Obstacle::Kind::plane) {
         const Vec3 n = (b_W_[k] - a_W_[k]).normalized();
-        if (n.dot(x.col(j) - a_W_[k]) < radius + reach) collect(j, k, 0.0);
-        if (j + 2 == s.n && n.dot(x.col(j + 1) - a_W_[k]) < radius + reach) collect(j, k, 1.0);
+        if (n.dot(x.col(j) - a_W_[k]) < margin) collect(j, k, 0.0);
+        if (j + 2 == s.n && n.dot(x.col(j + 1) - a_W_[k]) < margin) collect(j, k, 1.0);
         continue;
       }
-      const double near = radius + std::max(o.r_a, o.r_b) + reach;
+      if (parted) continue;
+      const double near = margin + std::max(o.r_a, o.r_b);
       if (((low - a_W_[k].cwiseMax(b_W_[k])).array() > near).any()) continue;
       if (((a_W_[k].cwiseMin(b_W_[k]) - high).array() > near).any()) continue;
       const SegmentPair c = closest_points(x.col(j), x.col(j + 1), a_W_[k], b_W_[k]);
-      if (c.distance < radius + bar_radius(o, c.t) + reach) collect(j, k, c.s);
+      if (c.distance < margin + bar_radius(o, c.t)) collect(j, k, c.s);
     }
   }
   keep_loads();
@@ -164,10 +166,11 @@ void RodObstacles::update(const Points& x, double radius, const ContactMaterial&
   }
 }
 
-double RodObstacles::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double ahead) const noexcept {
+double RodObstacles::energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, const RodTravel& travel,
+                            double fraction) const noexcept {
   double u = 0.0;
   for (const ObstacleTouch& t : touches_) {
-    if (t.gap > ahead) continue;
+    if (t.gap > fraction * travel.stride(t.edge)) continue;
     ObstacleTouch trial = t;
     measure(x, radius, trial);
     u += wall(trial.gap, radius, m).energy;

@@ -47,9 +47,9 @@ class RodObstacles {
   std::vector<ObstacleBody> bodies;
   std::vector<Obstacle> obstacles;
 
-  /// Collects what could touch while thread and bodies move at most `reach` [m] from where they are. Touches known before keep their load of
-  /// friction, others have none.
-  void find_touches(const RodState& s, const Points& x, double radius, double reach) noexcept;
+  /// Collects what could touch while each edge moves at most reach[edge] and every body `body_reach` [m] from where it is. Touches known before
+  /// keep their load of friction, others have none.
+  void find_touches(const RodState& s, const Points& x, double radius, const Eigen::VectorXd& reach, double body_reach) noexcept;
   void recall(const std::vector<ContactBristle>& memory) noexcept;
   void remember(std::vector<ContactBristle>& memory) const noexcept;
 
@@ -57,8 +57,9 @@ class RodObstacles {
   bool advance_bodies(const Points& x, double radius) noexcept;
 
   void update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept;
-  /// Potential [J] at x, no node of which is farther than `ahead` [m] from where it was at the last update.
-  double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, double ahead) const noexcept;
+  /// Potential [J] at x, `fraction` of the travel's move in question from where the nodes were at the last update.
+  double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, const RodTravel& travel,
+                double fraction) const noexcept;
   void add_gradient(const Points& x, const Points& x_start, double radius, const ContactMaterial& m,
                     Eigen::Matrix4Xd& gradient) noexcept;
   void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,

@@ -99,6 +99,11 @@ int grasp_between(const Pads& pads, const Pose& X_WT, int tool, const RodState& 
   double first = -1.0, last = -1.0;  // [m], stretch of the thread inside, by material coordinate
   double at = s.arc_start;
   for (int j = 0; j + 1 < s.n; ++j) {
+    if (s.alive[j] == 0) {  // nothing is there; what is held ends here
+      if (last >= 0.0) break;
+      at += s.rest_length[j];
+      continue;
+    }
     const Vec3 a = X_TW * Vec3(s.x.col(j)), b = X_TW * Vec3(s.x.col(j + 1));
     const int samples = std::max(2, static_cast<int>(std::ceil((b - a).norm() / (0.5 * pads.half_width))));
     for (int k = 0; k <= samples; ++k) {

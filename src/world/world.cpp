@@ -21,6 +21,15 @@ constexpr double kTakeGap = 0.10e-3;   // [m], tip gap below which closing jaws 
 constexpr double kLeaveGap = 0.16e-3;  // [m], tip gap above which they have let go
 constexpr double kIgnore = 0.45e-3;    // [m], thread on either side of the pads that does not touch the jaws that hold it
 
+/// Points where the thread has parted are held no longer.
+void let_go_of_gaps(const RodState& s, std::vector<GraspPoint>& points) noexcept {
+  constexpr double kAtNode = 1e-9;
+  std::erase_if(points, [&](const GraspPoint& p) {
+    const auto [edge, f] = locate_arc(s, p.arc);
+    return s.alive[edge] == 0 && f > kAtNode && f < 1.0 - kAtNode;
+  });
+}
+
 }  // namespace
 
 struct World::Impl {
@@ -239,6 +248,7 @@ void World::Impl::ignore_held_thread() noexcept {
 }
 
 void World::Impl::step_thread() noexcept {
+  let_go_of_gaps(state.thread, state.memory.grasps);
   std::array<int, 3> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) before[i] = held_by(static_cast<int>(i));
   if (needle) needle->before_thread(state, rod);

@@ -51,7 +51,7 @@ printf 'format: filum-suture/1\ntitle: no numbers\n' >"$work/model.yaml"
 expect "model without numbers" 2 "model.yaml" run knot-square --input "$work/short.yaml" --model "$work/model.yaml"
 
 # room for a recording's begin (the files of its scene), not for its steps
-if [ "$(id -u)" -eq 0 ] && mkdir "$work/full" && mount -t tmpfs -o size=400k tmpfs "$work/full" 2>/dev/null; then
+if [ "$(id -u)" -eq 0 ] && mkdir "$work/full" && mount -t tmpfs -o size=480k tmpfs "$work/full" 2>/dev/null; then
   expect "full disk" 1 "$work/full/session" run knot-square --input "$work/short.yaml" --record "$work/full/session" --json
   mount -o remount,ro "$work/full"
   expect "read-only folder" 2 "$work/full" run knot-square --input "$work/short.yaml" --record "$work/full/other"

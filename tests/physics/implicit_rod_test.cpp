@@ -227,7 +227,8 @@ TEST(ImplicitRod, CrowdedStrandsDoNotPassEither) {
   RodStepOptions o;
   o.max_iterations = 8;
   RodContact all(2 * kEach, 100000);
-  all.find_pairs(s, s.x, m.radius, 16.0 * m.radius);
+  all.travel.reach.setConstant(16.0 * m.radius);
+  all.find_pairs(s, s.x, m.radius);
   ASSERT_GT(all.pairs().size(), 16u * 2u * kEach) << "or the test shows nothing";
   for (int k = 0; k < 50; ++k) {
     const RodStepSummary summary = rod.step(s, memory, o);

@@ -118,16 +118,37 @@ TEST(RodObstacle, StretchHeldInTheJawsAndPartedEdgesAreNotTouched) {
   Points x = Points::Zero(3, 21);
   for (int i = 0; i < 21; ++i) x.col(i) = Vec3(0.5e-3 * i, 0, 0);
   RodState s = RodState::from_nodes(x, 21);
-  o.find_touches(s, x, 12.5e-6, 10e-6);
+  const Eigen::VectorXd reach = Eigen::VectorXd::Constant(21, 10e-6);
+  o.find_touches(s, x, 12.5e-6, reach, 0.0);
   EXPECT_FALSE(o.touches().empty());
   s.alive[9] = s.alive[10] = 0;
-  o.find_touches(s, x, 12.5e-6, 10e-6);
+  o.find_touches(s, x, 12.5e-6, reach, 0.0);
   EXPECT_TRUE(o.touches().empty()) << "a parted edge is not there";
   s.alive.setOnes();
   o.obstacles[0].ignore_from = 4e-3;
   o.obstacles[0].ignore_to = 6e-3;
-  o.find_touches(s, x, 12.5e-6, 10e-6);
+  o.find_touches(s, x, 12.5e-6, reach, 0.0);
   EXPECT_TRUE(o.touches().empty());
+}
+
+TEST(RodObstacle, EveryPieceOfACutThreadLiesOnTheSheetWithBothItsEnds) {
+  constexpr int kNodes = 12;
+  Points x(3, kNodes);
+  for (int i = 0; i < kNodes; ++i) x.col(i) = Vec3(0.4e-3 * i, 0, 0.1e-3);
+  RodMaterial m;
+  RodState s = RodState::from_nodes(x, kNodes);
+  s.alive[4] = s.alive[5] = 0;  // two pieces and a single node between them
+  ImplicitRod rod(m, ContactMaterial(), kNodes);
+  rod.obstacles.bodies.emplace_back();
+  Obstacle sheet;
+  sheet.kind = Obstacle::Kind::plane;
+  rod.obstacles.obstacles.push_back(sheet);
+  RodMemory memory = rod.make_memory();
+  RodStepOptions o;
+  o.dt = 2e-3;
+  for (int k = 0; k < 200; ++k) rod.step(s, memory, o);
+  for (int i = 0; i < kNodes; ++i) EXPECT_GT(s.x(2, i), 0.0) << "node " << i << " sank through the sheet";
+  EXPECT_LT(s.x.row(2).maxCoeff(), 0.05e-3) << "or nothing fell";
 }
 
 }  // namespace

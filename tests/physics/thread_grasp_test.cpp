@@ -98,6 +98,18 @@ TEST(ThreadGrasp, TakesOnlyWhatLiesBetweenThePads) {
   }
 }
 
+/// The gap between cut ends is no thread: held there, jaws drew the pieces together, and a needle off the thread that ends at it.
+TEST(ThreadGrasp, AGapIsNotHeld) {
+  Held h(kGrip);  // nodes 2, 3 and 4 at -0.5, 0 and 0.5 mm: the pads reach 0.15 mm to either side
+  h.s.alive[3] = 0;
+  std::vector<GraspPoint> points;
+  EXPECT_EQ(grasp_between(h.rod.grasps.tools[0].pads, Pose(), 0, h.s, 50e-6, points), kGraspPointsPerTool);
+  for (const GraspPoint& p : points) EXPECT_LE(p.anchor_T.y(), 1e-12);
+  h.s.alive[2] = 0;
+  points.clear();
+  EXPECT_EQ(grasp_between(h.rod.grasps.tools[0].pads, Pose(), 0, h.s, 50e-6, points), 0) << "a gap on either side";
+}
+
 TEST(ThreadGrasp, MaterialCoordinateFindsItsEdge) {
   const Held h(kGrip);
   for (double arc : {0.0, 0.3e-3, 4.99e-3, 10e-3}) {
