@@ -14,7 +14,7 @@ WallLaw WallLaw::hooke(double young, double poisson) {
 }
 
 LawConstants::LawConstants(const WallLaw& law)
-    : kind(law.kind), mu(law.mu), lambda(law.lambda_point()), k1(law.k1), k2(law.k2), strain_end(std::sqrt(kLargestExponent / law.k2)) {
+    : kind(law.kind), mu(law.mu), lambda(law.lambda_point()), k1(law.k1), k2(law.k2), strain_end(std::sqrt(kLargestExponent / law.k2)), c20(law.c20) {
   slope_end = k1 * (1.0 + 2.0 * kLargestExponent) * std::exp(kLargestExponent);
 }
 
@@ -57,6 +57,11 @@ SixSix law_tangent(const LawConstants& c, const LawGeometry<double>& g, const Si
   const double i2 = 1.0 / (J * J), volume = 0.25 * (c.lambda + c.mu);
   D = volume * ((1.0 + i2) * (1.0 + i2) - 2.0 * (1.0 - i2) * i2) * dJ * dJ.transpose();
   D += (volume * (J - 1.0 / J) * (1.0 + i2) - c.mu) * volume_ratio_tangent(g, C);
+  if (c.kind == WallLaw::Kind::yeoh) {
+    Six s;
+    for (int m = 0; m < 6; ++m) s[m] = (m < 3 ? 1.0 : 2.0) * g.metric[m];
+    D += 2.0 * c.c20 * s * s.transpose();
+  }
   if (c.kind != WallLaw::Kind::fibres) return D;
   for (const auto& a : g.fibre) {
     const double stretched = a[0] * C[0] + a[1] * C[1] + a[2] * C[3] - 1.0;

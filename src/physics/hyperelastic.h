@@ -9,6 +9,7 @@
 //   fibres       neo-Hookean + sum over two families of (k1/2 k2) [exp(k2 (I_i - 1)^2) - 1] where I_i > 1, I_i = a_i . C a_i
 //                (Holzapfel, Gasser & Ogden, J. Elasticity 61:1, 2000, eq. 62-65; invariants not split off their volume part:
 //                Sansour, Eur. J. Mech. A 27:28, 2008). mu is their c.
+//   yeoh         neo-Hookean + c20 (I1 - 3)^2   (Yeoh, Rubber Chem. Technol. 66:754, 1993, its first two terms)
 // The terms in J have at J = 1 the stress and the stiffness of mu ln J and (l/2)(J - 1)^2; the last grows without bound as a point is
 // squashed. `l` here is the point's share of Lame's constant (see vessel_wall_element.h); what resists the change of an
 // element's whole volume is added there. Exponents above kLargestExponent are continued by a straight line of stress.
@@ -22,13 +23,14 @@
 namespace filum {
 
 struct WallLaw {
-  enum class Kind { linear, neo_hookean, fibres };
+  enum class Kind { linear, neo_hookean, fibres, yeoh };
   Kind kind = Kind::linear;
   double mu = 0.0;      // [Pa], shear modulus
   double lambda = 0.0;  // [Pa], Lame's second constant
   double k1 = 0.0;      // [Pa], fibres
   double k2 = 1.0;      // [-]
   double beta = 0.0;    // [rad], angle of the fibres +- to the circumference
+  double c20 = 0.0;     // [Pa], yeoh
 
   static WallLaw hooke(double young, double poisson);
   /// Lame's share that belongs to points, such that a plate of one element through its thickness bends as plane stress
@@ -56,6 +58,7 @@ struct LawConstants {
   double k1, k2;
   double strain_end;         // I - 1 where the exponential ends
   double slope_end;          // d2Psi/dI2 [Pa] there and beyond
+  double c20;
 };
 inline constexpr double kLargestExponent = 12.0;
 inline constexpr double kTiny = 1e-12;  // least J^2: so that no number of a squashed element is infinite
@@ -122,6 +125,11 @@ S law_energy(const LawConstants& c, const LawGeometry<S>& g, const S* C, const S
   const S pressure = stiff * (1.0 + inverse * inverse) - c.mu;
   for (int m = 0; m < 6; ++m) T[m] = (m < 3 ? 0.5 : 1.0) * c.mu * g.metric[m] + pressure * dJ[m];
   S energy = 0.5 * c.mu * (first_invariant(g, C) - 3.0) + 0.5 * stiff * spread - c.mu * (J - 1.0);
+  if (c.kind == WallLaw::Kind::yeoh) {
+    const S excess = first_invariant(g, C) - 3.0, slope = 2.0 * c.c20 * excess;
+    for (int m = 0; m < 6; ++m) T[m] = T[m] + (m < 3 ? 1.0 : 2.0) * slope * g.metric[m];
+    return energy + c.c20 * excess * excess;
+  }
   if (c.kind != WallLaw::Kind::fibres) return energy;
   for (const auto& a : g.fibre) {
     S slope;

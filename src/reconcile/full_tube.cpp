@@ -1,8 +1,8 @@
-// vessel-inflation by the trainer's wall elements (physics/tube_slice): Hooke's law at vanishing strain for the linear part; for fibres and the
-// opening angle the pressure of a rubber wall that has them less that of one that has not, at equal motion, as the reduced model adds them. What acts
+// vessel-inflation by the trainer's wall elements (physics/tube_slice): Hooke's law at vanishing strain for the linear part; for fibres, Yeoh's
+// stiffening and the opening angle the pressure of a rubber wall that has them less that of one that has not, at equal motion, as the reduced model adds them. What acts
 // equally on the whole wall (relaxation, softening) or from outside (tethering: a pressure on an incompressible wall moves it alike on either side)
-// changes nothing in a slice but its load and stays the reduced model's, as do stiffening and tone, which the trainer's wall has
-// no law for, and the fibres' part of a tube that is stretched along its axis.
+// changes nothing in a slice but its load and stays the reduced model's, as do tone and the exponential form of stiffening, which the trainer's wall
+// has no law for, stiffening beside fibres, and both in a tube that is stretched along its axis.
 
 #include <algorithm>
 #include <cmath>
@@ -101,7 +101,7 @@ double tube_linear_factor(const TubeWall& w, int around) {
 WallTable tube_table(const TubeWall& w, const WallLaw& law, double opening, double most, const std::function<double(double)>& reduced, int around) {
   WallTable out;
   out.linear = tube_linear_factor(w, around);
-  const bool plain = law.kind != WallLaw::Kind::fibres && opening <= 0.0;
+  const bool plain = law.kind == WallLaw::Kind::neo_hookean && opening <= 0.0;
   if (plain || !std::isfinite(out.linear)) return out;
   WallLaw rubber = law;
   rubber.kind = WallLaw::Kind::neo_hookean;
@@ -164,6 +164,12 @@ class TubeSolver final : public FullSolver {
       own.p[static_cast<std::size_t>(index_of(Effect::fibre_stiffening))] = p;
       own.kind[static_cast<std::size_t>(index_of(Effect::fibre_stiffening))] = form;
       key.insert(key.end(), {law.k1, law.k2, law.beta});
+    }
+    if (const double* p = s.on(Effect::strain_stiffening); p != nullptr && level && law.kind == WallLaw::Kind::neo_hookean && s.form(Effect::strain_stiffening) == 0) {
+      law.kind = WallLaw::Kind::yeoh;
+      law.c20 = 0.5 * law.mu * p[0];
+      own.p[static_cast<std::size_t>(index_of(Effect::strain_stiffening))] = p;
+      key.push_back(-law.c20);
     }
     if (const double* p = s.on(Effect::residual_stress); p != nullptr && level) {
       opening = p[0];

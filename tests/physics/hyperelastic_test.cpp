@@ -63,6 +63,10 @@ TEST(Hyperelastic, DerivativesOfEveryLaw) {
   rubber.kind = WallLaw::Kind::neo_hookean;
   check_derivatives(rubber);
   check_derivatives(fibres());
+  WallLaw stiffening = fibres();
+  stiffening.kind = WallLaw::Kind::yeoh;
+  stiffening.c20 = 5e3;
+  check_derivatives(stiffening);
 }
 
 TEST(Hyperelastic, VolumeRatioAndItsDerivatives) {
@@ -108,6 +112,21 @@ TEST(Hyperelastic, ExponentialEndsSmoothly) {
   const double end = c.strain_end, e0 = fibre_energy(c, end - 1e-7, below), e1 = fibre_energy(c, end + 1e-7, above);
   EXPECT_NEAR(below / above, 1.0, 1e-5);
   EXPECT_NEAR((e1 - e0) / 2e-7 / above, 1.0, 1e-5);
+}
+
+/// Simple shear keeps the volume, I1 - 3 = g^2: stress mu g + 4 c20 g^3.
+TEST(Hyperelastic, YeohInSimpleShear) {
+  WallLaw law = fibres();
+  law.kind = WallLaw::Kind::yeoh;
+  law.c20 = 5e3;
+  const LawGeometry<double> g{{1, 1, 1, 0, 0, 0}, 1.0, {}};
+  for (const double shear : {0.1, 0.5, 1.2}) {
+    const Six C = (Six() << 1.0, 1.0 + shear * shear, 1.0, shear, 0.0, 0.0).finished();
+    Six dJ, T;
+    const double J = volume_ratio(g, C.data(), dJ.data());
+    law_energy(LawConstants(law), g, C.data(), J, dJ.data(), T.data());
+    EXPECT_NEAR(T[3] + 2.0 * shear * T[1], law.mu * shear + 4.0 * law.c20 * std::pow(shear, 3), 1e-9 * law.mu);  // dPsi/dg
+  }
 }
 
 TEST(Hyperelastic, HookeConstants) {

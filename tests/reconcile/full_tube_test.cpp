@@ -48,6 +48,26 @@ TEST(FullTube, FibresAreThoseOfTheQuadrature) {
   for (std::size_t i = 1; i < t.C.size(); ++i) EXPECT_LT(std::abs(t.beyond[i]), 0.02 * reduced(t.C[i]) + 20.0) << t.C[i];
 }
 
+TEST(FullTube, StiffeningIsThatOfTheQuadrature) {
+  WallLaw l = law(WallLaw::Kind::yeoh);
+  l.c20 = 25e3;
+  const auto reduced = [&](double C) {  // 4 c20 (I1 - 3)(l^2 - l^-2) over r, midpoint rule
+    double sum = 0.0;
+    const double ri = std::sqrt(kTube.inner * kTube.inner + 2 * C), ro = std::sqrt(kTube.outer * kTube.outer + 2 * C);
+    for (int i = 0; i < 400; ++i) {
+      const double r = ri + (ro - ri) * (i + 0.5) / 400, l2 = r * r / (r * r - 2 * C);
+      sum += (ro - ri) / 400 * 4 * l.c20 * (l2 + 1 / l2 - 2) * (l2 - 1 / l2) / r;
+    }
+    return sum;
+  };
+  const double most = 0.15 * kTube.outer * kTube.outer;
+  const WallTable t = tube_table(kTube, l, 0.0, most, reduced, 24);
+  ASSERT_TRUE(std::isfinite(t.linear));
+  ASSERT_EQ(t.C.size(), 7u);
+  EXPECT_GT(reduced(t.C.back()), 1e3);
+  for (std::size_t i = 1; i < t.C.size(); ++i) EXPECT_LT(std::abs(t.beyond[i]), 0.02 * reduced(t.C[i]) + 20.0) << t.C[i];
+}
+
 TEST(FullTube, OpeningAngleIsTheSectorsPressure) {
   // without what the reduced model says the table is the whole pressure of the closed sector beyond the ring's; here against its own quadrature
   const double angle = 100.0 * std::numbers::pi / 180.0, k = 1.0 / (1.0 - angle / (2 * std::numbers::pi)), mu = 50e3, a = kTube.inner, b = kTube.outer;

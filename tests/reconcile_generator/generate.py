@@ -63,6 +63,21 @@ def noise(rng, n, sigma, rho, white):
     return sigma * (np.sqrt(1 - white) * r + np.sqrt(white) * rng.standard_normal(n))
 
 
+def nuisances(rig, outputs, seed):
+    """Of the instrument: (its generator of random numbers, gains, bits, is the noise stated, are records held out)."""
+    rng = np.random.default_rng(seed + 7)
+    gain = {c: 1 + rng.uniform(-0.01, 0.01) for c in outputs}
+    if rig.rig in ('vessel-inflation',):
+        gain = {c: 1 + rng.uniform(-0.003, 0.003) for c in outputs}
+    bits = rng.integers(12, 17)
+    stated = rng.random() < 0.6
+    return rng, gain, bits, stated, rng.random() < 0.4
+
+
+def held(i):
+    return i % 5 == 4
+
+
 def build(cls, kind, seed):
     rng = np.random.default_rng(seed)
     pool = cls.effects
@@ -98,14 +113,18 @@ def build(cls, kind, seed):
     snr, worst, rival = 0.0, 0.0, (np.inf, '')
     if names:
         low = (1 - white) * (1 + rho) / (1 - rho) + white  # of slow noise; a line stands in faster, quieter bands
-        truth = oracle.Truth(rig, fx, sigma[rig.output], low, scatter, replicates * (3 if cls is Hold else 1), sensor)
+        hold_out = nuisances(rig, outputs, seed)[4]
+        fitted = [sum(not (hold_out and held(k * replicates + j)) for j in range(replicates)) * (3 if cls is Hold else 1) for k in range(len(trials) // replicates)]
+        judge = lambda: oracle.Truth(rig, fx, sigma[rig.output], low, scatter, fitted, sensor)
+        truth = judge()
         told = oracle.signal_to_noise(truth)
+        if faint and told[names[0]][0] > faint and level * told[names[0]][0] / faint < 0.1:
+            sigma = {c: v * told[names[0]][0] / faint for c, v in sigma.items()}
+            truth = judge()  # in the noise that the data get
+            told = oracle.signal_to_noise(truth)
         snr, worst = min(v[0] for v in told.values()), min(v[1] for v in told.values())
-        if faint and snr > faint and level * snr / faint < 0.1:
-            sigma = {c: v * snr / faint for c, v in sigma.items()}
-            snr = faint
         if kind == 'single':
-            rival = oracle.nearest_rival(truth, pool)
+            rival = oracle.nearest_rival(truth, pool, snr)
         if kind != 'unidentifiable' and (snr < 4 or worst < (0.3 * rig.sigma if cls is Hold else 0.012 * full[rig.output])):
             return None
     return rig, fx, trials, sigma, rho, white, full, snr, names, scatter, rival
@@ -113,16 +132,10 @@ def build(cls, kind, seed):
 
 def write(out, name, kind, made, seed):
     rig, fx, trials, sigma, rho, white, full, snr, names, scatter, rival = made
-    rng = np.random.default_rng(seed + 7)
     folder = os.path.join(out, 'data', name)
     os.makedirs(folder, exist_ok=True)
     inputs, outputs = list(trials[0][3]), list(trials[0][4])
-    gain = {c: 1 + rng.uniform(-0.01, 0.01) for c in outputs}
-    if rig.rig in ('vessel-inflation',):
-        gain = {c: 1 + rng.uniform(-0.003, 0.003) for c in outputs}
-    bits = rng.integers(12, 17)
-    stated = rng.random() < 0.6
-    hold_out = rng.random() < 0.4
+    rng, gain, bits, stated, hold_out = nuisances(rig, outputs, seed)
     lines = ['format: filum-experiment/1', f'title: "{rig.rig} {name}"', 'source: simulated', f'rig: {rig.rig}',
              'specimen: { ' + ', '.join(f'{k}: {text(k, v)}' for k, v in rig.specimen().items()) + ' }', 'model:', f'  file: {rig.model}', '  free: [' + ', '.join(rig.free) + ']']
     if kind == 'wrong-parameter' and rig.free and rig.free[0] == 'youngs_modulus':
@@ -155,8 +168,8 @@ def write(out, name, kind, made, seed):
             for row in zip(*cols.values()):
                 w.writerow(['%.7g' % v for v in row])
         extra = ', specimen: { ' + ', '.join(f'{k}: {text(k, v)}' for k, v in specimen.items()) + ' }' if specimen else ''
-        held = ', hold_out: true' if hold_out and i % 5 == 4 else ''
-        lines.append(f'  - {{ file: {file}, protocol: {{ ' + ', '.join(f'{k}: "{v}"' for k, v in protocol.items()) + f' }}, repeat: {letter}{extra}{held} }}')
+        kept = ', hold_out: true' if hold_out and held(i) else ''
+        lines.append(f'  - {{ file: {file}, protocol: {{ ' + ', '.join(f'{k}: "{v}"' for k, v in protocol.items()) + f' }}, repeat: {letter}{extra}{kept} }}')
     open(os.path.join(folder, 'experiment.yaml'), 'w').write('\n'.join(lines) + '\n')
     os.makedirs(os.path.join(out, 'labels'), exist_ok=True)
     json.dump({'kind': kind, 'rig': rig.rig, 'effects': names, 'parameters': fx, 'snr': float(snr), 'rival': rival[1], 'distance': float(rival[0]) if np.isfinite(rival[0]) else None, 'solver': F.SOLVER, 'rho': float(rho), 'white': float(white), 'seed': seed, 'scatter': float(scatter)},

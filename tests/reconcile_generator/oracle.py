@@ -10,11 +10,13 @@ COARSE = 3    # steps a sample (the data are made with ten)
 class Truth:
     """A rig whose random draws are the same at every call, so that a difference is due to what was changed."""
 
-    def __init__(self, rig, fx, sigma, low, scatter, replicates, sensor):
+    def __init__(self, rig, fx, sigma, low, scatter, fitted, sensor):
+        """fitted: of each protocol, the records that are not held out: only these may be used to choose a name."""
         self.rig, self.fx, self.sensor = rig, fx, sensor
-        self.protocols = rig.protocols()
-        self.weight = np.sqrt(replicates / low) / sigma
-        self.scale = max(scatter, 0.01) / np.sqrt(replicates)
+        self.protocols = [p for p, n in zip(rig.protocols(), fitted) if n > 0]
+        records = np.array([n for n in fitted if n > 0], float)
+        self.weight = np.sqrt(records / low) / sigma
+        self.scale = max(scatter, 0.01) / np.sqrt(records)
         self.gain = GAIN
         self.fine = getattr(rig, 'fine', F.FINE)
         self.measured = self.all(fx, State(self))
@@ -47,11 +49,11 @@ class Truth:
         best = (np.inf, np.inf)
         for step in range(rounds + 1):
             y = self.all(fx, state)
-            r = [(a - b) * self.weight for a, b in zip(self.measured, y)]
+            r = [(a - b) * w for a, b, w in zip(self.measured, y, self.weight)]
             prior = np.concatenate([-state.scale / self.scale, -state.gain / self.gain])
             chi = np.sqrt(sum(v @ v for v in r) + prior @ prior)
             if chi < best[0]:
-                best = (float(chi), max(float(np.sqrt(np.mean(v ** 2))) for v in r) / self.weight)
+                best = (float(chi), max(float(np.sqrt(np.mean(v ** 2))) / w for v, w in zip(r, self.weight)))
             if step == rounds or not np.isfinite(chi):
                 break
             self.move(fx, free, state, y, r, prior)
@@ -61,20 +63,20 @@ class Truth:
         n, m = len(r), len(state.base) + len(free)
         ends = np.cumsum([0] + [len(v) for v in r])
         J = np.zeros((ends[-1] + 2 * n, m + 2 * n))
-        slope = lambda a, b: (a - b) * self.weight / 1e-3
+        slope = lambda k, a, b: (a - b) * self.weight[k] / 1e-3
         for j, q in enumerate(list(state.base) + free):
             f, s = {e: dict(v) for e, v in fx.items()}, state.copy()
             if j < len(state.base):
                 s.base[q] *= 1.001
             else:
                 f[q[0]][q[1]] *= 1.001
-            J[:ends[-1], j] = np.concatenate([slope(a, b) for a, b in zip(self.all(f, s), y)])
+            J[:ends[-1], j] = np.concatenate([slope(k, a, b) for k, (a, b) in enumerate(zip(self.all(f, s), y))])
         for k in range(n):
             s = state.copy()
             s.scale[k] += 1e-3
-            J[ends[k]:ends[k + 1], m + k] = slope(self.record(k, fx, s), y[k])
-            J[ends[k]:ends[k + 1], m + n + k] = y[k] * self.weight
-            J[ends[-1] + k, m + k], J[ends[-1] + n + k, m + n + k] = 1 / self.scale, 1 / self.gain
+            J[ends[k]:ends[k + 1], m + k] = slope(k, self.record(k, fx, s), y[k])
+            J[ends[k]:ends[k + 1], m + n + k] = y[k] * self.weight[k]
+            J[ends[-1] + k, m + k], J[ends[-1] + n + k, m + n + k] = 1 / self.scale[k], 1 / self.gain
         if not np.isfinite(J).all():
             return
         x = np.clip(np.linalg.lstsq(J, np.concatenate(r + [prior]), rcond=1e-9)[0], -0.5, 0.5)
@@ -110,9 +112,9 @@ def signal_to_noise(truth):
     return out
 
 
-def nearest_rival(truth, pool):
-    """The other single effect that comes nearest, and at how many standard deviations it stays."""
-    nearest = (np.inf, '')
+def nearest_rival(truth, pool, snr):
+    """The other single effect that comes nearest, and at how many standard deviations it stays: no farther than the baseline (`snr`), which is a rival of no size."""
+    nearest = (snr, '')
     for rival in pool:
         if rival in truth.fx or rival in ('pulsation', 'mains-hum', 'physiological-tremor'):
             continue
