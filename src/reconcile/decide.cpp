@@ -317,8 +317,15 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   const Screen screen(fitter, search.base());
   r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
   r.masked = screen.score(*winner.forms[0], winner.params[0]).masked;
-  r.next = next_experiment(fitter, winner, *rivals[0]);
-  if (r.next) r.sentence += " What would: " + r.next->protocol + ".";
+  std::vector<const Fit*> all = rivals;
+  all.insert(all.begin(), &winner);
+  std::vector<double> evidence;
+  for (const Fit* f : all) evidence.push_back(search.bic(*f));
+  r.next = next_experiment(fitter, all, evidence, search.dispersion(), r.rules.tie);
+  if (!r.next) return;
+  char text[60];
+  std::snprintf(text, sizeof text, ", with a chance of %.0f %%", 100 * r.next->chance);
+  r.sentence += (r.next->chance >= 0.5 ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + r.next->protocol + text + ".";
 }
 
 void name_nothing(const Search& search, Result& r, const Options& options) {

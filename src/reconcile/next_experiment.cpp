@@ -1,9 +1,14 @@
-// T-optimality (Atkinson & Fedorov 1975) over a menu of protocols of the rig: each rival is simulated with its fitted values, the
-// other one is fitted to it (linearly, about its own optimum), and the protocol with the largest remaining distance in units of
-// noise wins. Its chance to decide is counted over 50 draws of the noise.
+// T-optimality (Atkinson & Fedorov 1975) over a menu of protocols of the rig. Each rival in turn is taken for the truth; what another one still
+// misses of the proposed record is
+//   T = min over its values d and the record's own scale c of  |W (y_true - y_rival - J d - y_rival c)|^2 + d' P d + c^2 / scatter^2,
+// P the information of the trials that were run (so that no rival may take values they exclude), J by differences. The protocol whose smallest
+// T over pairs of rivals is largest wins. Its chance is counted over 50 simulated records: the truth drawn in turn, its values by their
+// covariance, noise added, every rival fitted (linearly); it decides where the truth leads all others by more than a tie, the evidence so far included.
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/rng.h"
 #include "reconcile/result.h"
@@ -27,15 +32,16 @@ Eigen::VectorXd resample(const Eigen::VectorXd& v, const Eigen::VectorXd& time, 
   return out;
 }
 
-/// The trial with another clock (slower or faster by `factor`) and, at its end, the inputs held for `hold` times its length.
+constexpr double kMostSamples = 600;  // that are simulated; where the record would have more, each counts for several
+
+/// The trial with another clock (slower or faster by `factor`) and, at its end, the inputs held for `hold` times its length; sampled as before.
 Trial altered(const Trial& t, double factor, double hold) {
   Trial out = t;
-  const Eigen::Index n = 400;
   const double span = t.time[t.samples() - 1] - t.time[0];
+  const auto n = static_cast<Eigen::Index>(std::clamp((t.samples() - 1) * factor * (1.0 + hold), 20.0, kMostSamples)) + 1;
   const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(n, 0.0, span * (1.0 + hold));
   for (auto& [name, v] : out.data) v = resample(v, (t.time.array() - t.time[0]).matrix(), at);
-  for (const char* speed : {"speed"})
-    if (out.has(speed)) out.data[speed] /= factor;
+  if (out.has("speed")) out.data["speed"] /= factor;
   out.time = at * factor;
   out.file = "proposed";
   return out;
@@ -82,43 +88,104 @@ std::vector<Proposal> menu(const Dataset& d) {
   return out;
 }
 
-/// Prediction over noise, of the first output; the record's own scale is free.
-Eigen::VectorXd predict(const Fitter& fitter, const Fit& f, const Trial& t) {
-  Fit whole = f;
-  Setting s = fitter.setting(whole, 0);
+/// A rival on a proposed record, whitened: prediction, its derivatives by its values and the record's scale, information on these from before.
+struct Rival {
+  Eigen::VectorXd y;
+  Eigen::MatrixXd J, P, spread;  // spread * standard normal numbers: values as uncertain as they are
+  double evidence = 0.0;         // chi-squared by which it stands behind the first rival so far
+};
+
+/// Prediction of the first output over the noise; `share` of its samples' information, since neighbours are correlated.
+Eigen::VectorXd predict(const Fitter& fitter, const Fit& f, const Trial& t, double share) {
+  Setting s = fitter.setting(f, 0);
   s.scale = s.gain = 1.0;
   Eigen::MatrixXd out;
   fitter.model().simulate(t, s, out);
-  return out.col(0) / fitter.noise().output[0].sigma;
+  return out.col(0) * (std::sqrt(share) / fitter.noise().output[0].sigma);
 }
 
-/// Squared distance that is left when the record's scale may take what it can.
-double distance(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double scatter) {
-  const double bb = b.squaredNorm() + 1.0 / (scatter * scatter);
-  const Eigen::VectorXd miss = a - b;
-  const double along = miss.dot(b);
-  return std::max(0.0, miss.squaredNorm() - along * along / bb);
+Rival rival_on(const Fitter& fitter, const Fit& f, const Trial& t, double share) {
+  Rival r;
+  r.y = predict(fitter, f, t, share);
+  const auto globals = fitter.globals(f.forms);
+  const auto n = static_cast<Eigen::Index>(globals.size());
+  r.J.resize(r.y.size(), n + 1);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Fitter::Global& g = globals[static_cast<std::size_t>(k)];
+    Fit probe = f;
+    double& v = g.form < 0 ? probe.base[static_cast<std::size_t>(g.index)] : probe.params[static_cast<std::size_t>(g.form)][static_cast<std::size_t>(g.index)];
+    double h = g.logarithmic ? 1e-4 : 1e-5 * std::max(std::abs(v), 1e-2 * g.unit);
+    if ((g.logarithmic ? v * std::exp(h) : v + h) > g.high) h = -h;
+    v = g.logarithmic ? v * std::exp(h) : v + h;
+    r.J.col(k) = (predict(fitter, probe, t, share) - r.y) / h;
+  }
+  r.J.col(n) = r.y;
+  const double own = fitter.model().has_scale() ? fitter.noise().scatter : fitter.noise().gain_scatter;
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  if (f.covariance.rows() == n) covariance.topLeftCorner(n, n) = f.covariance;
+  covariance(n, n) = own * own;
+  for (Eigen::Index k = 0; k < n; ++k) {  // no value strays farther than its range
+    const Fitter::Global& g = globals[static_cast<std::size_t>(k)];
+    const double range = g.logarithmic ? std::log(g.high / g.low) : g.high - g.low;
+    if (const double factor = covariance(k, k) > range * range ? range / std::sqrt(covariance(k, k)) : 1.0; factor < 1.0) covariance.row(k) *= factor, covariance.col(k) *= factor;
+    covariance(k, k) += 1e-12 * range * range;
+  }
+  r.P = covariance.ldlt().solve(Eigen::MatrixXd::Identity(n + 1, n + 1));
+  r.spread = covariance.llt().matrixL();
+  return r;
+}
+
+/// What the rival misses of a record at best.
+double missed(const Rival& r, const Eigen::VectorXd& y) {
+  const Eigen::VectorXd miss = y - r.y, g = r.J.transpose() * miss;
+  return std::max(0.0, miss.squaredNorm() - g.dot((r.J.transpose() * r.J + r.P).ldlt().solve(g)));
+}
+
+/// Share of 50 simulated records that let the truth lead every other rival by more than `tie`.
+double chance_of(const std::vector<Rival>& rivals, double tie) {
+  Rng rng(7);
+  int decided = 0;
+  for (std::size_t i = 0; i < 50; ++i) {
+    const Rival& truth = rivals[i % rivals.size()];
+    Eigen::VectorXd z(truth.J.cols()), y = truth.y;
+    for (double& v : z) v = rng.normal();
+    y += truth.J * (truth.spread * z);
+    for (double& v : y) v += rng.normal();
+    const double own = truth.evidence + missed(truth, y);
+    decided += std::all_of(rivals.begin(), rivals.end(), [&](const Rival& r) { return &r == &truth || r.evidence + missed(r, y) - own > tie; }) ? 1 : 0;
+  }
+  return decided / 50.0;
 }
 
 }  // namespace
 
-std::optional<NextExperiment> next_experiment(const Fitter& fitter, const Fit& a, const Fit& b) {
+std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::vector<const Fit*>& rivals, const std::vector<double>& evidence, double dispersion, double tie) {
   NextExperiment best;
-  double most = -1.0, left = 0.0;
+  double most = -1.0;
+  std::vector<Rival> chosen;
+  const OutputNoise& noise = fitter.noise().output[0];
+  const Trial& first = fitter.model().data().trials[0];
+  const double step = (first.time[first.samples() - 1] - first.time[0]) / (first.samples() - 1);
   for (const Proposal& p : menu(fitter.model().data())) {
-    const Eigen::VectorXd ya = predict(fitter, a, p.trial), yb = predict(fitter, b, p.trial);
-    if (!ya.allFinite() || !yb.allFinite()) continue;
-    const double rho = fitter.noise().output[0].rho, share = (1.0 - rho) / (1.0 + rho);
-    const double d = share * std::min(distance(ya, yb, fitter.noise().scatter), distance(yb, ya, fitter.noise().scatter));
-    if (d > most) most = d, best.protocol = p.text, left = d;
+    const Eigen::Index n = p.trial.time.size();
+    const double each = (p.trial.time[n - 1] - p.trial.time[0]) / static_cast<double>(n - 1) / step;  // samples that one stands for
+    const double share = each * (1.0 - noise.rho) / (1.0 + noise.rho) / dispersion;
+    std::vector<Rival> on;
+    for (std::size_t i = 0; i < rivals.size(); ++i) {
+      on.push_back(rival_on(fitter, *rivals[i], p.trial, share));
+      on.back().evidence = evidence[i] - evidence[0];
+    }
+    double least = 1e300;
+    for (const Rival& a : on)
+      for (const Rival& b : on)
+        if (&a != &b) least = std::min(least, a.y.allFinite() && b.J.allFinite() ? missed(b, a.y) : -1.0);
+    if (least > most) most = least, best.protocol = p.text, chosen = std::move(on);
   }
   if (most < 0.0) return std::nullopt;
-  // log likelihood ratio of the rivals is normal with mean d and variance 4 d
-  Rng rng(7);
-  int decided = 0;
-  for (int i = 0; i < 50; ++i) decided += left + 2.0 * std::sqrt(left) * rng.normal() > 6.0 ? 1 : 0;
-  best.chance = decided / 50.0;
-  best.why = "it leaves the largest distance between the rivals, " + std::to_string(static_cast<int>(std::sqrt(left))) + " standard deviations of the noise";
+  best.chance = chance_of(chosen, tie);
+  char text[120];
+  std::snprintf(text, sizeof text, "it leaves the largest distance between the rivals, %.1f standard deviations of the noise", std::sqrt(most));
+  best.why = text;
   return best;
 }
 

@@ -122,7 +122,8 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
 std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& noise);
 Gap gap_of(const RigModel& model, const Noise& noise, const Fit& before, const Fit& after, const std::vector<bool>& trials);
 std::vector<Term> describe(const RigModel& model, const Fit& base);
-std::optional<NextExperiment> next_experiment(const Fitter& fitter, const Fit& a, const Fit& b);
+/// `evidence`: BIC of each rival (less is better); `tie`: by how much one must lead.
+std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::vector<const Fit*>& rivals, const std::vector<double>& evidence, double dispersion, double tie);
 std::vector<Estimate> baseline_estimates(const Fitter& fitter, const Fit& fit, double dispersion);
 std::vector<NamedEffect> effect_estimates(const Fitter& fitter, const Fit& fit, double dispersion);
 /// An interval reaches to the values that other forms give which the data do not tell apart: which form is true is part of what is not known.
