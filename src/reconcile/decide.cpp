@@ -358,6 +358,20 @@ void name_nothing(const Search& search, Result& r, const Options& options) {
   }
 }
 
+/// Of what is not named: where most of it sits, the term it follows, what would change the verdict.
+std::string described(const Result& r) {
+  std::map<std::string, double> phases;
+  for (const Cell& c : r.where) phases[c.phase] += c.share;
+  const auto most = std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  char text[240] = "";
+  std::string out;
+  if (most != phases.end()) std::snprintf(text, sizeof text, " %.0f %% of it sit where the trials are in %s", 100 * most->second, most->first.c_str());
+  out += text;
+  if (!r.shape.empty()) std::snprintf(text, sizeof text, "; it follows %s (in %.0f %% of resamplings)", r.shape[0].name.c_str(), 100 * r.shape[0].stability), out += text;
+  std::snprintf(text, sizeof text, ". A candidate that takes away %.0f %% of it, and %.0f %% in protocols it was not fitted to, would change this.", 100 * r.rules.explained, 100 * r.rules.held_out);
+  return out + (out.empty() ? text + 1 : text);
+}
+
 void finish(const Search& search, const Fit* winner, Result& r) {
   const Fitter& fitter = search.fitter();
   r.numerics = solver_error(fitter, winner != nullptr ? *winner : search.base());
@@ -372,6 +386,7 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise);
   r.residual_terms = describe(fitter.model(), r.before);
   if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after);
+  if (r.verdict == "unknown") r.sentence += described(r);
   list_tried(search, r, winner);
 }
 

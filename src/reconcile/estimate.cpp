@@ -178,7 +178,8 @@ std::vector<Term> describe(const RigModel& model, const Fit& base) {
     if (c.input && c.name != "time" && input.empty()) input = c.name;
   if (input.empty()) return {};
   const double fs = model.full_scale(d.outputs[0]);
-  const std::vector<std::string> names = {"1", input, "rate", "time", "output", input + "^2", "|rate|", "sign(rate)", input + "*time", input + "*rate", "output*rate", "output*time", input + "^3", "output^2"};
+  const std::vector<std::string> names = {"1", input, "rate", "time", "output", input + "^2", "|rate|", "sign(rate)", input + "*time", input + "*rate", "output*rate", "output*time", input + "^3", "output^2", "rate*|rate|"};
+  const int terms = static_cast<int>(names.size());
   std::vector<Eigen::RowVectorXd> rows;
   std::vector<double> y;
   std::vector<int> trial;
@@ -192,8 +193,8 @@ std::vector<Term> describe(const RigModel& model, const Fit& base) {
       const double r = base.residual[i][0][k];
       if (!std::isfinite(r)) continue;
       const double u = x[k] / most, v = (x[k] - x[k - step]) / most / (t.time[k] - t.time[k - step]) * 0.1 * span, s = (t.time[k] - t.time[0]) / span, f = base.predicted[i][0][k] / fs;
-      Eigen::RowVectorXd row(14);
-      row << 1, u, v, s, f, u * u, std::abs(v), (v > 1e-9) - (v < -1e-9), u * s, u * v, f * v, f * s, u * u * u, f * f;
+      Eigen::RowVectorXd row(terms);
+      row << 1, u, v, s, f, u * u, std::abs(v), (v > 1e-9) - (v < -1e-9), u * s, u * v, f * v, f * s, u * u * u, f * f, v * std::abs(v);
       rows.push_back(row);
       y.push_back(r / fs);
       trial.push_back(static_cast<int>(i));
@@ -207,7 +208,7 @@ std::vector<Term> describe(const RigModel& model, const Fit& base) {
   const std::size_t n = rows.size(), block = 20;
   constexpr int kRounds = 30;
   for (int round = 0; round < kRounds; ++round) {
-    Eigen::MatrixXd X(static_cast<Eigen::Index>(n), 14);
+    Eigen::MatrixXd X(static_cast<Eigen::Index>(n), terms);
     Eigen::VectorXd z(static_cast<Eigen::Index>(n));
     for (std::size_t k = 0; k < n; ++k) {
       static thread_local std::size_t start = 0;
@@ -221,7 +222,7 @@ std::vector<Term> describe(const RigModel& model, const Fit& base) {
     for (int m = 0; m < 3; ++m) {
       int best = -1;
       double most = 0.0;
-      for (int j = 0; j < 14; ++j) {
+      for (int j = 0; j < terms; ++j) {
         const double norm = X.col(j).norm();
         if (norm < 1e-9 || std::find(active.begin(), active.end(), j) != active.end()) continue;
         const double c = std::abs(X.col(j).dot(left)) / norm;

@@ -16,7 +16,9 @@ namespace {
 
 std::string number(double v, int digits = 4) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, v);
+  const bool whole = std::abs(v) < 1e6 && std::abs(v) >= std::pow(10.0, digits) - 0.5;  // no exponents where a plain number will do
+  if (whole) std::snprintf(text, sizeof text, "%.0f", v);
+  else std::snprintf(text, sizeof text, "%.*g", digits, v);
   return std::isfinite(v) ? text : "-";
 }
 
@@ -148,8 +150,11 @@ void checks(const Result& r, std::ostringstream& s) {
     const Detection& x = *r.detection;
     s << "<h2>Is anything missing?</h2><p>The largest sum of the baseline's residual over any window is " << number(x.statistic, 3) << " standard deviations (" << escaped(x.trial) << ", " << number(x.from) << " s to " << number(x.to)
       << " s), the best score test of the catalogue " << number(x.score, 4) << ". The rarer of the two among " << x.repetitions << " simulated repetitions in which the baseline is true: p = " << number(x.p, 2)
-      << "; some effect or line does as well as the best single one here in " << number(x.chance, 2) << " of such sets"
-      << ". What lies beyond the noise amounts to " << number(100 * x.excess, 2) << " % of full scale; " << number(100 * r.rules.materiality, 2) << " % is material.</p>\n";
+      << "; some effect or line does as well as the best single one here in " << number(100 * x.chance, 2) << " % of them. "
+      << (r.dispersion > 1.5 ? "In these figures what no candidate takes away counts as noise (overdispersion " + number(r.dispersion, 3) + "), so that no name rests on it; against the noise as measured, sums over blocks of the residual stand " +
+                                   number(r.structure_before, 3) + " standard deviations out. "
+                             : std::string())
+      << "What lies beyond the noise amounts to " << number(100 * x.excess, 2) << " % of full scale; " << number(100 * r.rules.materiality, 2) << " % is material.</p>\n";
   }
   if (!r.numerics.sensitivities.empty()) {
     s << "<h2>Numbers behind the fit</h2><p>Halving the time step changes a record's prediction by " << at_most(r.numerics.time) << " of full scale, halving the cells by " << at_most(r.numerics.mesh)

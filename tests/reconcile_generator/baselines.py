@@ -38,8 +38,9 @@ def by_bic(report):
 def by_terms(report):
     table = TERMS.get(report['rig'], {})
     for term in report.get('residual_terms', []):
-        if term['stability'] >= 0.8 and term['term'] in table:
-            return {table[term['term']]}
+        name = 'rate' if term['term'] == 'rate*|rate|' else term['term']
+        if term['stability'] >= 0.8 and name in table:
+            return {table[name]}
     return set()
 
 
