@@ -313,7 +313,9 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   r.rivals.clear();
   r.rivals.push_back({effects_in(winner), form_text(winner), search.bic(winner) - search.bic(search.base()), explained, false, ""});
   for (const Fit* f : rivals) r.rivals.push_back({effects_in(*f), form_text(*f), search.bic(*f) - search.bic(search.base()), search.explained(*f), false, ""});
-  say(r, "These trials cannot tell " + names(effects_in(winner)) + " from " + names(effects_in(*rivals[0])) + ".");
+  std::string others;
+  for (const Fit* f : rivals) others += (others.empty() ? "" : " or ") + names(effects_in(*f));
+  say(r, "These trials cannot tell " + names(effects_in(winner)) + " from " + others + ".");
   const Screen screen(fitter, search.base());
   r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
   r.masked = screen.score(*winner.forms[0], winner.params[0]).masked;
@@ -324,7 +326,7 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   r.next = next_experiment(fitter, all, evidence, search.dispersion(), r.rules.tie);
   if (!r.next) return;
   char text[60];
-  std::snprintf(text, sizeof text, ", with a chance of %.0f %%", 100 * r.next->chance);
+  std::snprintf(text, sizeof text, ", which decides in %.0f of 50 simulated repetitions", 50 * r.next->chance);
   r.sentence += (r.next->chance >= 0.5 ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + r.next->protocol + text + ".";
 }
 

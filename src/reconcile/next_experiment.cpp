@@ -1,8 +1,8 @@
 // T-optimality (Atkinson & Fedorov 1975) over a menu of protocols of the rig. Each rival in turn is taken for the truth; what another one still
 // misses of the proposed record is
 //   T = min over its values d and the record's own scale c of  |W (y_true - y_rival - J d - y_rival c)|^2 + d' P d + c^2 / scatter^2,
-// P the information of the trials that were run (so that no rival may take values they exclude), J by differences. The protocol whose smallest
-// T over pairs of rivals is largest wins. Its chance is counted over 50 simulated records: the truth drawn in turn, its values by their
+// P the information of the trials that were run (so that no rival may take values they exclude), J by differences. The protocol that is to decide most pairs of
+// rivals wins; among equals, that of the largest smallest T. Its chance is counted over 50 simulated records: the truth drawn in turn, its values by their
 // covariance, noise added, every rival fitted (linearly); it decides where the truth leads all others by more than a tie, the evidence so far included.
 
 #include <Eigen/Cholesky>
@@ -135,16 +135,21 @@ Rival rival_on(const Fitter& fitter, const Fit& f, const Trial& t, double share)
   return r;
 }
 
-/// What the rival misses of a record at best.
+/// What the rival misses of a record at best, T.
 double missed(const Rival& r, const Eigen::VectorXd& y) {
   const Eigen::VectorXd miss = y - r.y, g = r.J.transpose() * miss;
   return std::max(0.0, miss.squaredNorm() - g.dot((r.J.transpose() * r.J + r.P).ldlt().solve(g)));
 }
 
-/// Share of 50 simulated records that let the truth lead every other rival by more than `tie`.
-double chance_of(const std::vector<Rival>& rivals, double tie) {
+/// Over 50 simulated records, the truth in turn each rival: the share in which it leads all others by more than `tie`, and how many rivals
+/// it has left on average, itself counted.
+struct Outcome {
+  double chance = 0.0, left = 0.0;
+};
+
+Outcome outcome_of(const std::vector<Rival>& rivals, double tie) {
   Rng rng(7);
-  int decided = 0;
+  int decided = 0, remaining = 0;
   for (std::size_t i = 0; i < 50; ++i) {
     const Rival& truth = rivals[i % rivals.size()];
     Eigen::VectorXd z(truth.J.cols()), y = truth.y;
@@ -152,16 +157,32 @@ double chance_of(const std::vector<Rival>& rivals, double tie) {
     y += truth.J * (truth.spread * z);
     for (double& v : y) v += rng.normal();
     const double own = truth.evidence + missed(truth, y);
-    decided += std::all_of(rivals.begin(), rivals.end(), [&](const Rival& r) { return &r == &truth || r.evidence + missed(r, y) - own > tie; }) ? 1 : 0;
+    const auto others = std::count_if(rivals.begin(), rivals.end(), [&](const Rival& r) { return &r != &truth && r.evidence + missed(r, y) - own <= tie; });
+    decided += others == 0 ? 1 : 0;
+    remaining += 1 + static_cast<int>(others);
   }
-  return decided / 50.0;
+  return {decided / 50.0, remaining / 50.0};
+}
+
+/// Share of the pairs that a record is to decide: twice the log likelihood ratio of two rivals is normal, mean T and variance 4 T (Cox 1961).
+double pairs_decided(const std::vector<Rival>& rivals, double tie, double& least) {
+  double sum = 0.0;
+  least = 1e300;
+  for (const Rival& a : rivals)
+    for (const Rival& b : rivals) {
+      if (&a == &b) continue;
+      const double T = a.y.allFinite() && b.J.allFinite() && b.y.allFinite() ? missed(b, a.y) : 0.0;
+      least = std::min(least, T);
+      sum += 0.5 * std::erfc((tie - T - b.evidence + a.evidence) / (2.0 * std::sqrt(2.0 * std::max(T, 1e-9))));
+    }
+  return sum / static_cast<double>(rivals.size() * (rivals.size() - 1));
 }
 
 }  // namespace
 
 std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::vector<const Fit*>& rivals, const std::vector<double>& evidence, double dispersion, double tie) {
   NextExperiment best;
-  double most = -1.0;
+  double most = -1.0, distance = 0.0;
   std::vector<Rival> chosen;
   const OutputNoise& noise = fitter.noise().output[0];
   const Trial& first = fitter.model().data().trials[0];
@@ -175,16 +196,16 @@ std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::v
       on.push_back(rival_on(fitter, *rivals[i], p.trial, share));
       on.back().evidence = evidence[i] - evidence[0];
     }
-    double least = 1e300;
-    for (const Rival& a : on)
-      for (const Rival& b : on)
-        if (&a != &b) least = std::min(least, a.y.allFinite() && b.J.allFinite() ? missed(b, a.y) : -1.0);
-    if (least > most) most = least, best.protocol = p.text, chosen = std::move(on);
+    double least = 0.0;
+    const double share_decided = pairs_decided(on, tie, least);
+    if (share_decided > most + 1e-3 || (share_decided > most - 1e-3 && least > distance)) most = share_decided, distance = least, best.protocol = p.text, chosen = std::move(on);
   }
   if (most < 0.0) return std::nullopt;
-  best.chance = chance_of(chosen, tie);
-  char text[120];
-  std::snprintf(text, sizeof text, "it leaves the largest distance between the rivals, %.1f standard deviations of the noise", std::sqrt(most));
+  const Outcome outcome = outcome_of(chosen, tie);
+  best.chance = outcome.chance;
+  char text[160];
+  std::snprintf(text, sizeof text, "it leaves %.1f standard deviations of the noise between the two rivals that stay nearest, and on average %.1f of %d rivals", std::sqrt(distance), outcome.left,
+                static_cast<int>(rivals.size()));
   best.why = text;
   return best;
 }
