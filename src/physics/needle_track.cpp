@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kPointGrip = 1.0;  // [-], friction of the point where it rests: it digs in
 constexpr double kBack = 0.1e-6;      // [m], by which the point must leave the next layer to be off it: less is the wall's own trembling
+constexpr double kBeside = 0.1e-3;    // [m], a free point's reach: no wall moves as far in a step
 constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind a knot to have left it
 
 double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
@@ -210,6 +211,19 @@ void NeedleTracks::take_point(VesselWall& wall, const WallState& w, TrackState& 
     find_contact(wall, w, s, tip, along);
   }
   s.point_before = tip;
+}
+
+void NeedleTracks::mark_point(const VesselWall& wall, const WallState& w, const TrackState& s) noexcept {
+  near_ = false;
+  if (s.open >= 0 || s.point.kind != PointContact::Kind::none) return;
+  const WallCrossing c = wall.nearest(w, s.point_before, kBeside);
+  near_ = c.found;
+  beside_ = c.point;
+  if (near_) beside_W_ = wall.position(w, beside_);
+}
+
+void NeedleTracks::carry_point(const VesselWall& wall, const WallState& w, TrackState& s) const noexcept {
+  if (near_) s.point_before += wall.position(w, beside_) - beside_W_;
 }
 
 void NeedleTracks::find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& tip, const Vec3& along) noexcept {

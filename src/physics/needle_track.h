@@ -66,6 +66,10 @@ class NeedleTracks {
   /// After needle and thread have moved: loads on the wall, what slid, what was pierced or torn. Returns the number of events.
   int follow(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const RodState* thread, double dt,
              const std::vector<RodTether>& on_needle, const std::vector<RodTether>& on_thread, TrackEvent* events, int room) noexcept;
+  /// Before and after the wall's step: where the point was moves with the surface that it is near. What tells a contact is motion relative to
+  /// the wall; a wall that comes upon a point would else pass it unseen.
+  void mark_point(const VesselWall& wall, const WallState& w, const TrackState& s) noexcept;
+  void carry_point(const VesselWall& wall, const WallState& w, TrackState& s) const noexcept;
 
  private:
   struct Use {
@@ -99,6 +103,9 @@ class NeedleTracks {
   std::vector<Use> uses_;
   std::array<Vec3, kMaxTracks> load_;  // [N], on the tissue of each track in this step
   int point_tether_ = -1;
+  bool near_ = false;        // the needle's point stands free within reach of the surface,
+  WallPoint beside_;         // next to this material point,
+  Vec3 beside_W_;            // [m], which was here before the wall's step
 };
 
 }  // namespace filum

@@ -84,8 +84,10 @@ RigSample TrackRig::step(double move, double sideways) {
     last_event_ = events[static_cast<std::size_t>(k)].name;
     event_force_ = events[static_cast<std::size_t>(k)].value;
   }
+  tracks_->mark_point(*wall_, wall_state_, state_);
   wall_->step(wall_state_);
   wall_->refit(wall_state_);
+  tracks_->carry_point(*wall_, wall_state_, state_);
   const Vec3 force = -tool.force;  // of the vice on the needle
   work_ += 0.5 * (force + last_force_).dot(moved);
   last_force_ = force;

@@ -156,10 +156,12 @@ void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread,
   for (int part = 0; part < std::min(2, wall_.n_parts()); ++part) wall_.set_pressure(part, s.pressure[static_cast<std::size_t>(part)]);
   move_clamp(s);
   wall_.meet(s.wall);
+  tracks_.mark_point(wall_, s.wall, s.tracks);
   const WallSummary summary = wall_.step(s.wall);
   if (!summary.sound && o.n_events < static_cast<int>(o.events.size()))
     o.events[static_cast<std::size_t>(o.n_events++)] = {"solver-trouble", -1, summary.residual, "N"};
   wall_.refit(s.wall);
+  tracks_.carry_point(wall_, s.wall, s.tracks);
 }
 
 void VesselScene::observe(const VesselState& s, const RodState& thread, Observation& o) const noexcept {

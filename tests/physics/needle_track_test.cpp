@@ -122,6 +122,37 @@ int follow_nodes(int i, const Vec3& anchor, const std::vector<Vec3>& needle, dou
   return i;
 }
 
+/// A card that is lifted towards a needle standing still, by a third of its thickness and in steps of 4 um: told by the needle's own motion the
+/// point would stand within the tissue and be none the wiser.
+TEST(NeedleTrack, WallThatComesUponAPointThatStandsStillMeetsIt) {
+  CardShape shape;
+  VesselWall wall(make_card(shape), {{"card", shape.thickness, WallLaw::hooke(1e6, 0.3)}}, {});
+  WallState w = wall.first_state();
+  wall.refit(w);
+  NeedleShape needle;
+  NeedleTracks tracks(plain_track(5e-3, 1e-3, 5.0), needle, wall);
+  const double L = needle.length();
+  Pose X_WN;
+  X_WN.q = Quat::FromTwoVectors(needle.tangent(L), -Vec3::UnitZ());
+  X_WN.p = Vec3(0.0, -0.3e-3, 0.5 * shape.thickness + 10e-6) - X_WN.q * needle.point(L);
+  TrackState s;
+  s.point_before = X_WN * needle.point(L);
+  std::vector<RodTether> on_needle, on_thread;
+  on_needle.reserve(8);
+  TrackEvent events[8];
+  int steps = 0;
+  for (; s.point.kind == PointContact::Kind::none && steps * 4e-6 < shape.thickness / 3.0; ++steps) {
+    tracks.hold(wall, w, s, X_WN, nullptr, on_needle, on_thread);
+    tracks.follow(wall, w, s, X_WN, nullptr, 2e-3, on_needle, on_thread, events, 8);
+    tracks.mark_point(wall, w, s);
+    w.x.row(2).array() += 4e-6;
+    wall.refit(w);
+    tracks.carry_point(wall, w, s);
+  }
+  EXPECT_EQ(s.point.kind, PointContact::Kind::outside);
+  EXPECT_LE(steps, 4) << "10 um away";
+}
+
 TEST(NeedleTrack, NodeRuleOfTheSeedGoesInStairsTheTrackDoesNot) {
   RigOptions o;
   o.track = plain_track(5e-3, 1e-3, 5.0);
