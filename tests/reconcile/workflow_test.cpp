@@ -103,6 +103,25 @@ TEST(Workflow, OneTrialWithoutReplicatesIsSolvedAndSaidSo) {
   EXPECT_NE(r.verdict, "agree");
 }
 
+/// A block that loses a quarter of its stiffness at once, half way: no law of the catalogue.
+TEST(Workflow, AnUnknownEffectIsDescribedAndNotForced) {
+  Folder f;
+  Rng rng(4);
+  f.write("experiment.yaml", block_yaml(kTrials));
+  for (const auto& [name, speed] : std::vector<std::pair<std::string, double>>{{"a.csv", 1}, {"b.csv", 1}, {"c.csv", 8}, {"d.csv", 8}})
+    f.write(name, block_csv([&, v = speed](double t, double u, int) { return 5.0 * u * (t * v > 9.0 ? 0.75 : 1.0) + 0.03 * rng.normal(); }, speed));
+  const Result r = solve(f);
+  EXPECT_EQ(r.verdict, "unknown") << r.sentence;
+  EXPECT_TRUE(r.effects.empty());
+  ASSERT_FALSE(r.shape.empty());
+  EXPECT_GT(r.shape[0].stability, 0.6);
+  // a step is no term of the list: the load's product with time comes nearest to it (force or displacement, which are alike)
+  EXPECT_TRUE(std::any_of(r.shape.begin(), r.shape.end(), [](const Term& t) { return (t.name == "output*time" || t.name == "displacement*time") && t.stability > 0.5; }));
+  ASSERT_FALSE(r.where.empty());
+  EXPECT_NE(r.sentence.find("it follows " + r.shape[0].name), std::string::npos) << r.sentence;
+  EXPECT_NE(r.sentence.find("would change this"), std::string::npos);
+}
+
 TEST(Workflow, WritesTheReportOfTheContract) {
   Folder f;
   write_block(f, 0.4, 2);

@@ -4,7 +4,7 @@ Seen: likelihood ratio of the effect against the baseline, chi-squared with as m
 (Wilks, Wald), above the level at which one set in 400 with nothing in it would be named although every effect of the rig is tried (Bonferroni);
 a line has two amplitudes of free phase in every record and stands anywhere in its bands.
 Told: against the oracle's nearest rival at d standard deviations twice the log likelihood ratio is normal, mean d^2, variance 4 d^2 (Cox 1961,
-linear in between); it must exceed 6, the odds of 20 to 1 of a 95 % set. The nearest rival is one of the oracle's draws: wider families come nearer, so
+linear in between; a rival of no size is the baseline, which `seen` has counted); it must exceed 6, the odds of 20 to 1 of a 95 % set. The nearest rival is one of the oracle's draws: wider families come nearer, so
 these are upper bounds."""
 import json
 import os
@@ -42,7 +42,7 @@ def seen(label, folder):
 
 def told(label):
     d = label['distance']
-    return 1.0 if d is None else norm.cdf((d * d - TIE) / (2 * d))
+    return 1.0 if d is None or not label['rival'] else norm.cdf((d * d - TIE) / (2 * d))
 
 
 data, labels, reports = sys.argv[1:4]
