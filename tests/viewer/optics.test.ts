@@ -1,4 +1,4 @@
-import { blurDiameter, eyeAt, fieldDiameter, magnificationFor, kWorkingDistance, openingAngle, scaleBar, zoomed, type OpticsState } from "@viewer/scene/optics";
+import { blurDiameter, eyeAt, fieldDiameter, magnificationFor, magnificationShowing, kWorkingDistance, openingAngle, scaleBar, zoomed, type OpticsState } from "@viewer/scene/optics";
 
 const optics = (change: Partial<OpticsState> = {}): OpticsState => ({ magnification: 10, focus: 3, centre: [1, 2], tilt: 0.2, eyeDistance: 22, ...change });
 
@@ -53,5 +53,13 @@ describe("the start", () => {
   it("shows what is stitched at a third of the field", () => {
     expect(3 * Math.sqrt(5.4 * 1)).toBeCloseTo(fieldDiameter(magnificationFor(5.4, 1)), 9);
     expect(magnificationFor(0.5, 0.5)).toBe(40);
+  });
+
+  it("has the needle that is to be taken in the picture", () => {
+    const start = magnificationShowing(30.6, 11.4, 1.6); // beside the stumps of anastomosis-8
+    expect(fieldDiameter(start) / 2).toBeGreaterThan(13);
+    expect(fieldDiameter(start) / 2).toBeLessThan(15);
+    expect(magnificationShowing(28, 0.5, 1.6)).toBe(28); // already there
+    expect(magnificationShowing(28, 90, 1.6)).toBe(5); // no microscope shows it
   });
 });

@@ -18,6 +18,11 @@ export const kMagnificationBrain = 5; // blades, lips and the way between them
 export function magnificationFor(length: number, width: number): number {
   return clampMagnification(kFieldNumber / (3 * Math.sqrt(Math.max(1e-6, length * width))));
 }
+/// The greatest magnification up to `wanted` at which what lies `distance` from the middle of the field and reaches `reach` [mm] further is in the picture, a tenth
+/// of the field's radius from its edge: a needle that must be taken first has to be seen.
+export function magnificationShowing(wanted: number, distance: number, reach: number): number {
+  return clampMagnification(Math.min(wanted, (0.9 * kFieldNumber) / (2 * Math.max(1e-6, distance + reach))));
+}
 export const kTilt = 0.21; // [rad], at which instruments are seen from the operator's side
 export const kTiltBrain = 0.1; // [rad], into a fissure: nearly from above, as its target is measured, but no blade quite on edge
 export const kWorkingDistance = 200; // [mm], objective to focal plane
