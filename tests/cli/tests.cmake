@@ -26,6 +26,11 @@ endif()
 if(TARGET filum)
   add_test(NAME cli.knot_demo COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/knot_demo_test.sh $<TARGET_FILE:filum> ${PROJECT_SOURCE_DIR})
   set_tests_properties(cli.knot_demo PROPERTIES TIMEOUT 900 COST 1000)  # the longest first
+  foreach(knot square surgeons)
+    add_test(NAME cli.knot_lengths_${knot}
+             COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/knot_lengths_test.sh $<TARGET_FILE:filum> ${PROJECT_SOURCE_DIR} knot-${knot} ${knot})
+    set_tests_properties(cli.knot_lengths_${knot} PROPERTIES TIMEOUT 900 COST 900)
+  endforeach()
 endif()
 if(TARGET filum)
   add_test(NAME cli.haptic_run COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/haptic_run_test.sh $<TARGET_FILE:filum> $<TARGET_FILE:filum_haptic_client>)
