@@ -81,6 +81,17 @@ describe.skipIf(!hasTrainer)("trainer", () => {
     expect(opened.trouble).toEqual([]);
   });
 
+  it("begins with the needle to be taken in the picture, and says how much is magnified", async () => {
+    opened = await openPage(trainer.address);
+    const { page } = opened;
+    await start("pointer", "anastomosis-8");
+    const needle = opened.frame()!.needle!.pose.position;
+    const magnification = await until(async () => Number.parseFloat((await page.locator(".mag").first().textContent())!), (m) => m < 20, "the field widens to the needle");
+    expect(await page.locator(".optic output").first().textContent()).toBe(`${magnification.toFixed(1)}×`);
+    const radius = 200 / magnification / 2; // [mm], of the field: 200 mm at once
+    expect(1000 * Math.hypot(needle[0], needle[1])).toBeLessThan(radius);
+  });
+
   it("offers a demonstration only where there is one", async () => {
     opened = await openPage(trainer.address);
     const { page } = opened;

@@ -122,12 +122,19 @@ export class FieldView {
   }
   /// The newest frame as it is seen now, a JPEG in an address.
   picture(): string {
-    if (this.frame) this.microscope.update(this.frame);
+    if (this.frame) this.take(this.frame);
     this.microscope.draw();
     return this.canvas.toDataURL("image/jpeg", 0.85);
   }
   /// Quality was chosen by hand.
   redraw(): void { this.changed(); }
+
+  /// The first frame may show that the start's magnification leaves the needle out of the picture; scale bar and sliders follow.
+  private take(frame: Frame): void {
+    const { magnification } = this.microscope.optics;
+    this.microscope.update(frame);
+    if (this.microscope.optics.magnification !== magnification) this.changed();
+  }
 
   private changed(): void {
     this.dirty = true;
@@ -148,7 +155,7 @@ export class FieldView {
     this.drewLast = this.dirty;
     if (!this.dirty) return;
     this.dirty = false;
-    if (this.frame) this.microscope.update(this.frame);
+    if (this.frame) this.take(this.frame);
     this.microscope.draw();
     if (this.frame && this.waiting.length > 0) {
       this.ondrawn(this.waiting, this.frame);
