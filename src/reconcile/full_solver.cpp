@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "physics/implicit_rod.h"
-#include "physics/linear_fem.h"
 
 namespace filum::reconcile {
 namespace {
@@ -77,66 +76,6 @@ HangingRod hang_rod(double G, const std::vector<double>& rest, int edges) {
 
 namespace {
 
-/// 0 ... `blade` in equal cells, then cells that widen by a third each, up to `end`.
-std::vector<double> graded(double blade, double end, int cells) {
-  std::vector<double> x = {0.0};
-  for (int i = 1; i <= cells; ++i) x.push_back(blade * i / cells);
-  double width = blade / cells;
-  std::vector<double> outside;
-  double sum = 0.0;
-  for (int i = 0; i < 60 && sum < end - blade; ++i) width *= 1.33, outside.push_back(width), sum += width;
-  double at = blade;
-  for (const double w : outside) x.push_back(at += w * (end - blade) / sum);
-  return x;
-}
-
-}  // namespace
-
-double press_stiffness(const Vec3& box, double blade_length, double blade_width, double poissons_ratio, int cells) {
-  const std::vector<double> x = graded(0.5 * blade_length, 0.5 * box.x(), cells + cells / 2), y = graded(0.5 * blade_width, 0.5 * box.y(), cells);
-  std::vector<double> z = graded(0.5 * std::min(blade_width, box.z()), box.z(), cells);  // depth below the surface
-  const int nx = static_cast<int>(x.size()) - 1, ny = static_cast<int>(y.size()) - 1, nz = static_cast<int>(z.size()) - 1;
-  TetMesh mesh = box_mesh(Vec3::Zero(), Vec3(nx, ny, nz), nx, ny, nz);
-  std::vector<int> held;
-  std::vector<MovedNode> moved;
-  for (int i = 0; i < mesh.n_nodes(); ++i) {
-    const Vec3 cell = mesh.nodes.col(i);
-    const auto a = static_cast<std::size_t>(std::lround(cell.x())), b = static_cast<std::size_t>(std::lround(cell.y())), c = static_cast<std::size_t>(nz - std::lround(cell.z()));
-    mesh.nodes.col(i) = Vec3(x[a], y[b], box.z() - z[c]);
-    if (c == z.size() - 1) held.push_back(i);
-  }
-  FemOptions o;
-  o.averaged_pressure = true;
-  o.solver.relative = 1e-6;
-  o.solver.max_iterations = 4000;
-  LinearFem fem(mesh, {{1.0, poissons_ratio, 1000.0}}, o, "box of tissue");
-  fem.hold(held);
-  for (int i = 0; i < mesh.n_nodes(); ++i) {
-    const Vec3 p = mesh.nodes.col(i);
-    if (p.z() < 1e-9 * box.z()) continue;
-    MovedNode m;
-    m.node = i;
-    if (p.z() > box.z() * (1.0 - 1e-9) && p.x() < 0.5 * blade_length * (1 + 1e-9) && p.y() < 0.5 * blade_width * (1 + 1e-9)) {
-      m.target = Vec3(0, 0, -1.0);  // of depth 1: the problem is linear
-    } else if (p.x() == 0.0 || p.y() == 0.0) {  // planes of symmetry: stiff against leaving them
-      m.prescribed = false;
-      const double k = 1e4 * fem.nodal_stiffness(i);
-      m.stiffness = Vec3(p.x() == 0.0 ? k : 0.0, p.y() == 0.0 ? k : 0.0, 0.0).asDiagonal();
-    } else {
-      continue;
-    }
-    moved.push_back(m);
-  }
-  FemState s = fem.rest();
-  if (!fem.equilibrium(s, moved).sound) return NAN;
-  double force = 0.0;
-  for (const MovedNode& m : moved)
-    if (m.prescribed) force -= m.force.z();
-  return 4.0 * force;
-}
-
-namespace {
-
 /// The thread: shapes at some instants of a record, in between by interpolation of what differs from the elastica (which is smooth in time).
 class RodSolver final : public FullSolver {
  public:
@@ -180,40 +119,11 @@ class RodSolver final : public FullSolver {
   mutable std::map<std::vector<long>, HangingRod> known_;
 };
 
-/// The tissue under a blade: linear, so one equilibrium for each geometry gives every force in proportion.
-class TissueSolver final : public FullSolver {
- public:
-  explicit TissueSolver(const RigModel& model) : model_(model) {}
-  std::string name() const override { return "the trainer's tissue (physics/linear_fem)"; }
-
-  bool run(const Trial& t, const Setting& s, bool fine, Eigen::MatrixXd& out) const override {
-    model_.rig(t, s, out);
-    const double ratio = stiffness(t, s.base[1], fine) / model_.punch_stiffness(t, s.base[1]);
-    for (Eigen::Index c = 0; c < out.cols(); ++c) {
-      const std::string& name = model_.data().outputs[static_cast<std::size_t>(c)];
-      if (name == "force" || name == "pressure") out.col(c) *= ratio;
-    }
-    return std::isfinite(ratio);
-  }
-
- private:
-  double stiffness(const Trial& t, double nu, bool fine) const {
-    const Vec3 box(t.size("length"), t.size("width"), t.size("height"));
-    const double length = t.size("blade_length"), width = t.size("blade_width");
-    const std::vector<double> key = {box.x(), box.y(), box.z(), length, width, nu, fine ? 1.0 : 0.0};
-    const auto found = known_.find(key);
-    if (found != known_.end()) return found->second;
-    return known_[key] = press_stiffness(box, std::min(length, 0.98 * box.x()), std::min(width, 0.98 * box.y()), std::min(nu, 0.49), fine ? 5 : 3);
-  }
-  const RigModel& model_;
-  mutable std::map<std::vector<double>, double> known_;
-};
-
 }  // namespace
 
 std::unique_ptr<FullSolver> make_full_solver(const RigModel& model) {
   if (model.data().rig == Rig::suture_cantilever) return std::make_unique<RodSolver>(model);
-  if (model.data().rig == Rig::spatula_press) return std::make_unique<TissueSolver>(model);
+  if (model.data().rig == Rig::spatula_press || model.data().rig == Rig::tissue_block) return make_tissue_solver(model);
   if (model.data().rig == Rig::vessel_inflation) return make_tube_solver(model);
   if (model.data().rig == Rig::suture_pull) return make_pull_solver(model);
   if (model.data().rig == Rig::needle_insertion) return make_needle_solver(model);

@@ -1,13 +1,15 @@
 #pragma once
 // The trainer's own solvers run on a rig's protocol: the rod (physics/implicit_rod) for suture-cantilever and, on a bar, suture-pull, the tissue
-// (physics/linear_fem) for spatula-press, the wall (physics/tube_slice) for vessel-inflation, the needle's track (physics/track_rig) for
-// needle-insertion. A block's deformation is homogeneous (its closed form is the simulation), the forceps' line is the calibration's own code
+// (physics/linear_fem) for spatula-press and for what is not homogeneous in a block (physics/pore_flow), the wall (physics/tube_slice) for vessel-inflation, the needle's track (physics/track_rig) for
+// needle-insertion. Elsewhere a block's deformation is homogeneous (its closed form is the simulation), the forceps' line is the calibration's own code
 // (devices/bridge_line.h), and a tip that is held has no input to simulate. Tests: full_solver_test, full_tube_test, full_pull_test, full_needle_test.
 
 #include <functional>
 
 #include "base/pose.h"
+#include "base/tet_mesh.h"
 #include "physics/hyperelastic.h"
+#include "reconcile/hereditary.h"
 #include "reconcile/model.h"
 
 namespace filum::reconcile {
@@ -24,6 +26,23 @@ HangingRod hang_rod(double G, const std::vector<double>& rest, int edges);
 /// equilibrium of linear tetrahedra with averaged pressure on a quarter of the box, cells graded towards the blade.
 /// `cells`: under half the blade, across its width; the rest follows.
 double press_stiffness(const Vec3& box, double blade_length, double blade_width, double poissons_ratio, int cells);
+/// The quarter box of press_stiffness and its nodes under the blade, at the bottom and on the two planes of symmetry.
+struct PressedBox {
+  TetMesh mesh;
+  std::vector<char> blade, bottom, middle_x, middle_y, free;  // of each node; free: of the surface, not under the blade
+};
+PressedBox pressed_box(const Vec3& box, double blade_length, double blade_width, int cells);
+
+/// A specimen between platens: width x depth x height [m], or a cylinder of this width where `round`.
+struct Block {
+  double width = 0.0, depth = 0.0, height = 0.0;
+  bool round = false;
+};
+/// Relaxation of a block's force after a sudden compression between platens without friction, drained at its sides or (`ends`) through the platens, for a diffusivity of 1 m2/s
+/// and a share of the stiffness that drains away: finite elements of Biot's theory (physics/pore_flow) on an eighth of it.
+Kernel block_drainage(const Block& block, double poissons_ratio, double share, bool ends, int cells);
+/// The same under a blade, drained at the free surface.
+Kernel press_drainage(const Vec3& box, double blade_length, double blade_width, double poissons_ratio, double share, int cells);
 
 /// A tube without load, [m].
 struct TubeWall {
@@ -57,6 +76,8 @@ class FullSolver {
  public:
   virtual ~FullSolver() = default;
   virtual std::string name() const = 0;
+  /// False where the deformation stays homogeneous with these forms, so that the law is the simulation.
+  virtual bool needed(const std::vector<const Form*>&) const { return true; }
   /// Outputs of a trial before the sensor; `fine`: on a mesh of half the size. False where it did not come to rest.
   virtual bool run(const Trial& t, const Setting& s, bool fine, Eigen::MatrixXd& out) const = 0;
 };
@@ -64,6 +85,7 @@ class FullSolver {
 /// Null where there is none.
 std::unique_ptr<FullSolver> make_full_solver(const RigModel& model);
 std::unique_ptr<FullSolver> make_tube_solver(const RigModel& model);
+std::unique_ptr<FullSolver> make_tissue_solver(const RigModel& model);
 std::unique_ptr<FullSolver> make_needle_solver(const RigModel& model);
 std::unique_ptr<FullSolver> make_pull_solver(const RigModel& model);
 

@@ -36,6 +36,8 @@ struct WallTable {
   double at(double c) const;         // [Pa], between them, and beyond them in proportion
 };
 
+struct Kernel;
+
 /// Values of one evaluation; null where an effect is off.
 struct Setting {
   std::array<const double*, kEffects> p{};
@@ -44,6 +46,7 @@ struct Setting {
   double scale = 1.0;   // of this specimen's stiffness (friction coefficient, gain) against the batch
   double gain = 1.0;    // of this record's output
   int mesh = 1;         // times as many cells, points and modes as usual: 2 tells what the usual number costs (numerics.h)
+  const Kernel* drained = nullptr;    // tissue: what the mesh says of drainage in place of the series (full_tissue.cpp)
   const WallTable* wall = nullptr;  // vessel-inflation: what the wall's finite elements say beyond the reduced tube (full_tube.cpp)
 
   const double* on(Effect e) const { return p[static_cast<std::size_t>(index_of(e))]; }

@@ -203,6 +203,7 @@ void Tissue::drain(const Trial& t, const Geometry& g, const Setting& s, Eigen::V
   }
   const double* p = s.on(Effect::poroelastic_drainage);
   if (p == nullptr || g.mode == Mode::shear) return;  // shear keeps the volume: nothing drains
+  if (s.drained != nullptr) return relax(*s.drained, t.time, f);
   switch (s.form(Effect::poroelastic_drainage)) {
     case 0: relax(radial_drainage(p[1], p[0], g.radius, 12 * s.mesh), t.time, f); break;
     case 1: relax(slab_drainage(p[1], p[0], g.height, 12 * s.mesh), t.time, f); break;

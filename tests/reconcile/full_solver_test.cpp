@@ -74,5 +74,19 @@ TEST(FullSolver, SquareBladeOnDeepTissueIsAPunchOnAHalfSpace) {
   std::printf("rigid square blade, deep tissue, over the half-space: %.3f and %.3f with finer cells\n", coarse, fine);
 }
 
+TEST(FullSolver, DrainageGoesWithTheSquareOfTheSizeAndLosesTheShareAskedFor) {
+  const Kernel small = block_drainage({4e-3, 4e-3, 5e-3, true}, 0.48, 0.3, false, 4), large = block_drainage({8e-3, 8e-3, 5e-3, true}, 0.48, 0.3, false, 4);
+  EXPECT_NEAR(large.tau[0] / small.tau[0], 4.0, 1e-6);
+  EXPECT_NEAR(small.rest, 0.7, 0.01);  // E_d = 0.7 E_u; the open rim's cells are drained at once
+  // slowest mode of an unconfined cylinder: J1(x) = x J0(x) (1 - nu)/(1 - 2 nu), nu = 0.036, nearly incompressible: x = 1.86 (Armstrong, Lai & Mow 1984)
+  EXPECT_NEAR(small.tau[0] * 1.86 * 1.86 / 4e-6, 1.0, 0.06);
+  const Kernel ends = block_drainage({8e-3, 8e-3, 4e-3, false}, 0.48, 0.3, true, 4), high = block_drainage({16e-3, 16e-3, 8e-3, false}, 0.48, 0.3, true, 4);
+  EXPECT_NEAR(high.tau[0] / ends.tau[0], 4.0, 1e-6);
+  EXPECT_NEAR(ends.rest, 0.7, 0.05);
+  // on deep tissue a punch's stiffness is as G/(1 - nu): the share asked for is lost but for the box's walls
+  const Kernel blade = press_drainage(Vec3(50e-3, 50e-3, 50e-3), 5e-3, 5e-3, 0.48, 0.3, 2);
+  EXPECT_NEAR(blade.rest, 0.7, 0.05);
+}
+
 }  // namespace
 }  // namespace filum::reconcile

@@ -1,0 +1,189 @@
+// tissue-block and spatula-press by the trainer's tissue (physics/linear_fem, physics/pore_flow). Linear in the motion, so one equilibrium for each geometry
+// gives every force in proportion, and one relaxation after a sudden motion every record by superposition (Boltzmann).
+// A block without drainage or friction at its platens is homogeneous: nothing is asked of a mesh.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "physics/linear_fem.h"
+#include "physics/pore_flow.h"
+#include "reconcile/full_solver.h"
+
+namespace filum::reconcile {
+namespace {
+
+/// 0 ... `blade` in equal cells, then cells that widen by a third each, up to `end`.
+std::vector<double> graded(double blade, double end, int cells) {
+  std::vector<double> x = {0.0};
+  for (int i = 1; i <= cells; ++i) x.push_back(blade * i / cells);
+  double width = blade / cells;
+  std::vector<double> outside;
+  double sum = 0.0;
+  for (int i = 0; i < 60 && sum < end - blade; ++i) width *= 1.33, outside.push_back(width), sum += width;
+  double at = blade;
+  for (const double w : outside) x.push_back(at += w * (end - blade) / sum);
+  return x;
+}
+
+Kernel over_sudden(const DrainingForce& f) {
+  Kernel k{f.rest / f.sudden(), f.weight, f.time};
+  for (double& w : k.weight) w /= f.sudden();
+  return k;
+}
+
+}  // namespace
+
+PressedBox pressed_box(const Vec3& box, double blade_length, double blade_width, int cells) {
+  const std::vector<double> x = graded(0.5 * blade_length, 0.5 * box.x(), cells + cells / 2), y = graded(0.5 * blade_width, 0.5 * box.y(), cells);
+  const std::vector<double> z = graded(0.5 * std::min(blade_width, box.z()), box.z(), cells);  // depth below the surface
+  const int nx = static_cast<int>(x.size()) - 1, ny = static_cast<int>(y.size()) - 1, nz = static_cast<int>(z.size()) - 1;
+  PressedBox out{box_mesh(Vec3::Zero(), Vec3(nx, ny, nz), nx, ny, nz), {}, {}, {}, {}, {}};
+  for (int i = 0; i < out.mesh.n_nodes(); ++i) {
+    const Vec3 cell = out.mesh.nodes.col(i);
+    const auto a = static_cast<std::size_t>(std::lround(cell.x())), b = static_cast<std::size_t>(std::lround(cell.y())), c = static_cast<std::size_t>(nz - std::lround(cell.z()));
+    out.mesh.nodes.col(i) = Vec3(x[a], y[b], box.z() - z[c]);
+    out.bottom.push_back(c == z.size() - 1);
+    out.blade.push_back(c == 0 && x[a] < 0.5 * blade_length * (1 + 1e-9) && y[b] < 0.5 * blade_width * (1 + 1e-9));
+    out.middle_x.push_back(a == 0);
+    out.middle_y.push_back(b == 0);
+    out.free.push_back(!out.blade.back() && (c == 0 || a == x.size() - 1 || b == y.size() - 1));
+  }
+  return out;
+}
+
+double press_stiffness(const Vec3& box, double blade_length, double blade_width, double poissons_ratio, int cells) {
+  const PressedBox b = pressed_box(box, blade_length, blade_width, cells);
+  FemOptions o;
+  o.averaged_pressure = true;
+  o.solver.relative = 1e-6;
+  o.solver.max_iterations = 4000;
+  LinearFem fem(b.mesh, {{1.0, poissons_ratio, 1000.0}}, o, "box of tissue");
+  std::vector<int> held;
+  std::vector<MovedNode> moved;
+  for (int i = 0; i < b.mesh.n_nodes(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    MovedNode m;
+    m.node = i;
+    if (b.bottom[at]) {
+      held.push_back(i);
+    } else if (b.blade[at]) {
+      m.target = Vec3(0, 0, -1.0);  // of depth 1: the problem is linear
+      moved.push_back(m);
+    } else if (b.middle_x[at] || b.middle_y[at]) {  // planes of symmetry: stiff against leaving them
+      m.prescribed = false;
+      const double k = 1e4 * fem.nodal_stiffness(i);
+      m.stiffness = Vec3(b.middle_x[at] ? k : 0.0, b.middle_y[at] ? k : 0.0, 0.0).asDiagonal();
+      moved.push_back(m);
+    }
+  }
+  fem.hold(held);
+  FemState s = fem.rest();
+  if (!fem.equilibrium(s, moved).sound) return NAN;
+  double force = 0.0;
+  for (const MovedNode& m : moved)
+    if (m.prescribed) force -= m.force.z();
+  return 4.0 * force;
+}
+
+Kernel press_drainage(const Vec3& box, double blade_length, double blade_width, double poissons_ratio, double share, int cells) {
+  const PressedBox b = pressed_box(box, blade_length, blade_width, cells);
+  DrainingBody body{b.mesh, {1.0, poissons_ratio, 1000.0}, {1.0, poisson_by_punch(share, poissons_ratio)}, {}, Points::Zero(3, b.mesh.n_nodes()), b.free};
+  for (std::size_t i = 0; i < b.blade.size(); ++i) {
+    const bool tied = b.blade[i] || b.bottom[i];
+    for (const bool held : {tied || b.middle_x[i], tied || b.middle_y[i], tied}) body.held.push_back(held);
+    if (b.blade[i]) body.motion(2, static_cast<Eigen::Index>(i)) = -1.0;
+  }
+  return over_sudden(draining_force(body));
+}
+
+Kernel block_drainage(const Block& block, double poissons_ratio, double share, bool ends, int cells) {
+  // through the sides nothing varies along the height: one layer will do
+  const int along = ends ? cells : 1, across = ends ? (cells + 1) / 2 : 2 * cells;
+  const double high = ends ? 0.5 * block.height : 0.5 * block.width / across;
+  DrainingBody body{box_mesh(Vec3::Zero(), Vec3(across, across, along), across, across, along), {1.0, poissons_ratio, 1000.0}, {1.0, poisson_by_block(share, poissons_ratio)}, {}, {}, {}};
+  Points& nodes = body.mesh.nodes;
+  body.motion = Points::Zero(3, nodes.cols());
+  for (Eigen::Index i = 0; i < nodes.cols(); ++i) {
+    const double x = nodes(0, i), y = nodes(1, i), ring = std::max(x, y), z = nodes(2, i);
+    const bool top = z > along - 0.5, bottom = z < 0.5;
+    for (const bool held : {x == 0.0, y == 0.0, top || bottom}) body.held.push_back(held);
+    body.open.push_back(ends ? top : ring > across - 0.5);
+    if (top) body.motion(2, i) = -1.0;
+    const double angle = ring == 0.0 ? 0.0 : 0.25 * std::numbers::pi * (x >= y ? y / ring : 2.0 - x / ring);
+    if (block.round) nodes.col(i).head<2>() = 0.5 * block.width * ring / across * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    else nodes.col(i).head<2>() = 0.5 / across * Eigen::Vector2d(block.width * x, block.depth * y);
+    nodes(2, i) = high * z / along;
+  }
+  return over_sudden(draining_force(body));
+}
+
+namespace {
+
+class TissueSolver final : public FullSolver {
+ public:
+  explicit TissueSolver(const RigModel& model) : model_(model) {}
+  std::string name() const override { return "the trainer's tissue (physics/linear_fem)"; }
+  bool needed(const std::vector<const Form*>& forms) const override {
+    return press() || std::any_of(forms.begin(), forms.end(), [](const Form* f) { return f->effect == Effect::poroelastic_drainage; });
+  }
+
+  bool run(const Trial& t, const Setting& s, bool fine, Eigen::MatrixXd& out) const override {
+    Setting on_mesh = s;
+    Kernel drained;
+    if (const double* p = s.on(Effect::poroelastic_drainage); p != nullptr && (press() || t.word("mode") != "shear")) {
+      drained = drainage(t, s.base[1], p[1], s.form(Effect::poroelastic_drainage) % 2 == 1, fine);
+      for (double& time : drained.tau) time /= p[0];
+      on_mesh.drained = &drained;
+      if (!std::isfinite(drained.rest)) return false;
+    }
+    model_.rig(t, on_mesh, out);
+    if (!press()) return true;
+    const double ratio = stiffness(t, s.base[1], fine) / model_.punch_stiffness(t, s.base[1]);
+    for (Eigen::Index c = 0; c < out.cols(); ++c) {
+      const std::string& name = model_.data().outputs[static_cast<std::size_t>(c)];
+      if (name == "force" || name == "pressure") out.col(c) *= ratio;
+    }
+    return std::isfinite(ratio);
+  }
+
+ private:
+  bool press() const { return model_.data().rig == Rig::spatula_press; }
+  /// Box, blade.
+  std::array<double, 5> sizes(const Trial& t) const {
+    const Vec3 box(t.size("length"), t.size("width"), t.size("height"));
+    return {box.x(), box.y(), box.z(), std::min(t.size("blade_length"), 0.98 * box.x()), std::min(t.size("blade_width"), 0.98 * box.y())};
+  }
+  double stiffness(const Trial& t, double nu, bool fine) const {
+    const auto [x, y, z, length, width] = sizes(t);
+    const std::vector<double> key = {x, y, z, length, width, nu, fine ? 1.0 : 0.0};
+    const auto found = known_.find(key);
+    if (found != known_.end()) return found->second;
+    return known_[key] = press_stiffness(Vec3(x, y, z), length, width, std::min(nu, 0.49), fine ? 5 : 3);
+  }
+  const Kernel& drainage(const Trial& t, double nu, double share, bool ends, bool fine) const {
+    nu = std::min(nu, 0.49);
+    share = std::clamp(1e-3 * std::round(1e3 * share), 1e-3, 0.95);
+    std::vector<double> key = {nu, share, ends ? 1.0 : 0.0, fine ? 1.0 : 0.0, t.size("height")};
+    const bool round = t.shape == "cylinder";
+    for (const char* name : {"length", "width", "diameter", "blade_length", "blade_width"}) key.push_back(std::string(name).starts_with("blade") && !press() ? 0.0 : (std::string(name) == "diameter") != round ? 0.0 : t.size(name));
+    const auto found = relaxing_.find(key);
+    if (found != relaxing_.end()) return found->second;
+    if (press()) {
+      const auto [x, y, z, length, width] = sizes(t);
+      return relaxing_[key] = press_drainage(Vec3(x, y, z), length, width, nu, share, fine ? 3 : 2);
+    }
+    const Block block = round ? Block{t.size("diameter"), t.size("diameter"), t.size("height"), true} : Block{t.size("length"), t.size("width"), t.size("height"), false};
+    return relaxing_[key] = block_drainage(block, nu, share, ends, fine ? 8 : 5);
+  }
+  const RigModel& model_;
+  mutable std::map<std::vector<double>, double> known_;
+  mutable std::map<std::vector<double>, Kernel> relaxing_;
+};
+
+}  // namespace
+
+std::unique_ptr<FullSolver> make_tissue_solver(const RigModel& model) { return std::make_unique<TissueSolver>(model); }
+
+}  // namespace filum::reconcile
