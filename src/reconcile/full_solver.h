@@ -9,6 +9,7 @@
 #include "base/pose.h"
 #include "base/tet_mesh.h"
 #include "physics/hyperelastic.h"
+#include "physics/tissue_law.h"
 #include "reconcile/hereditary.h"
 #include "reconcile/model.h"
 
@@ -32,6 +33,12 @@ struct PressedBox {
   std::vector<char> blade, bottom, middle_x, middle_y, free;  // of each node; free: of the surface, not under the blade
 };
 PressedBox pressed_box(const Vec3& box, double blade_length, double blade_width, int cells);
+
+/// Mean of dev(eps):dev(eps) over 3/2 at a depth of one height, weighted by the energy of shape: what a square of depth over height is in the tissue.
+double local_strain_square(const PressedBox& box, double height, double poissons_ratio);
+/// Along a press to strain `peak` and back, by the elements' own law; `reduced`: force of (strain, largest past one) in units of the linear force at strain one.
+/// Empty where an equilibrium was not found. The law's values are those of depth over height.
+PressTable press_table(const PressedBox& box, double height, double poissons_ratio, const TissueLaw& law, double local_square, double peak, const std::function<double(double, double)>& reduced);
 
 /// A specimen between platens: width x depth x height [m], or a cylinder of this width where `round`.
 struct Block {

@@ -138,6 +138,12 @@ class TissueSolver final : public FullSolver {
       on_mesh.drained = &drained;
       if (!std::isfinite(drained.rest)) return false;
     }
+    PressTable pressed;
+    if (press() && !law_of(s).linear()) {
+      pressed = table(t, s, fine);
+      on_mesh.press = &pressed;
+      if (pressed.load.empty()) return false;
+    }
     model_.rig(t, on_mesh, out);
     if (!press()) return true;
     const double ratio = stiffness(t, s.base[1], fine) / model_.punch_stiffness(t, s.base[1]);
@@ -162,6 +168,31 @@ class TissueSolver final : public FullSolver {
     if (found != known_.end()) return found->second;
     return known_[key] = press_stiffness(Vec3(x, y, z), length, width, std::min(nu, 0.49), fine ? 5 : 3);
   }
+  TissueLaw law_of(const Setting& s) const {
+    TissueLaw law;
+    if (const double* p = s.on(Effect::strain_stiffening)) law.stiffening = p[0], law.exponential = s.form(Effect::strain_stiffening) == 2;
+    if (const double* p = s.on(Effect::first_cycle_softening)) law.softening = p[0], law.softening_energy = p[1], law.softening_form = s.form(Effect::first_cycle_softening);
+    if (const double* p = s.on(Effect::permanent_set)) law.set = p[0], law.set_strain = s.form(Effect::permanent_set) == 0 ? 0.0 : model_.largest_strain();
+    return law;
+  }
+  /// The values are taken to three digits, so that a fit that stands still asks for no further equilibria.
+  const PressTable& table(const Trial& t, const Setting& s, bool fine) const {
+    const auto [x, y, z, length, width] = sizes(t);
+    const double nu = std::min(s.base[1], 0.49), peak = 1e-4 * std::round(1e4 * t.at("depth").maxCoeff() / z);
+    TissueLaw law = law_of(s);
+    const auto digits = [](double v) { return v == 0.0 ? 0.0 : std::exp(0.01 * std::round(100.0 * std::log(v))); };
+    for (double* v : {&law.stiffening, &law.softening, &law.softening_energy, &law.set}) *v = digits(*v);
+    const std::vector<double> key = {x, y, z, length, width, nu, peak, law.stiffening, law.exponential ? 1.0 : 0.0, law.softening, law.softening_energy, double(law.softening_form), law.set, law.set_strain, fine ? 1.0 : 0.0};
+    const auto found = pressed_.find(key);
+    if (found != pressed_.end()) return found->second;
+    double& square = square_[{x, y, z, length, width, nu}];  // the material's: of one mesh for both
+    if (square == 0.0) square = local_strain_square(pressed_box(Vec3(x, y, z), length, width, 2), z, nu);
+    const double stiffening = law.stiffening, soft[] = {law.softening, law.softening_energy}, set = law.set;
+    Setting rounded = s;
+    const auto put = [&](Effect e, const double* v) { if (s.on(e) != nullptr) rounded.p[static_cast<std::size_t>(index_of(e))] = v; };
+    put(Effect::strain_stiffening, &stiffening), put(Effect::first_cycle_softening, soft), put(Effect::permanent_set, &set);
+    return pressed_[key] = press_table(pressed_box(Vec3(x, y, z), length, width, fine ? 3 : 2), z, nu, law, square, std::max(peak, 1e-4), [&](double e, double most) { return model_.press_law(t, rounded, e, most); });
+  }
   const Kernel& drainage(const Trial& t, double nu, double share, bool ends, bool fine) const {
     nu = std::min(nu, 0.49);
     share = std::clamp(1e-3 * std::round(1e3 * share), 1e-3, 0.95);
@@ -180,6 +211,8 @@ class TissueSolver final : public FullSolver {
   const RigModel& model_;
   mutable std::map<std::vector<double>, double> known_;
   mutable std::map<std::vector<double>, Kernel> relaxing_;
+  mutable std::map<std::vector<double>, PressTable> pressed_;
+  mutable std::map<std::vector<double>, double> square_;
 };
 
 }  // namespace

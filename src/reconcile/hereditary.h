@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "physics/tissue_law.h"
+
 namespace filum::reconcile {
 
 /// g(t) = rest + sum weight_i exp(-t/tau_i), rest + sum weight_i = 1.
@@ -30,8 +32,5 @@ Kernel radial_drainage(double g1, double diffusivity, double size, int modes = 1
 void relax(const Kernel& k, const Eigen::VectorXd& time, Eigen::Ref<Eigen::VectorXd> f);
 /// The inverse problem: from the response with memory (prescribed) to the elastic one.
 void creep(const Kernel& k, const Eigen::VectorXd& time, Eigen::Ref<Eigen::VectorXd> f);
-
-/// Share of the full first-cycle softening at x = (Wmax - W)/W0: exponential, error function (Ogden & Roxburgh 1999), or x/(1 + x).
-inline double softening_share(double x, int kind) { return kind == 0 ? -std::expm1(-x) : kind == 1 ? std::erf(x) : x / (1.0 + x); }
 
 }  // namespace filum::reconcile

@@ -38,6 +38,15 @@ struct WallTable {
 
 struct Kernel;
 
+/// Force of a blade by finite elements less the reduced model's, in units of the linear force at a strain (depth over height) of one: at equal steps of the
+/// strain up to the peak, on the way there and back.
+struct PressTable {
+  static constexpr int kPoints = 5;
+  double peak = 0.0;
+  std::vector<double> load, unload;  // kPoints + 1 each
+  double at(double strain, double most) const;
+};
+
 /// Values of one evaluation; null where an effect is off.
 struct Setting {
   std::array<const double*, kEffects> p{};
@@ -47,6 +56,7 @@ struct Setting {
   double gain = 1.0;    // of this record's output
   int mesh = 1;         // times as many cells, points and modes as usual: 2 tells what the usual number costs (numerics.h)
   const Kernel* drained = nullptr;    // tissue: what the mesh says of drainage in place of the series (full_tissue.cpp)
+  const PressTable* press = nullptr;  // spatula-press: what elements that stiffen, soften and set add (full_press.cpp)
   const WallTable* wall = nullptr;  // vessel-inflation: what the wall's finite elements say beyond the reduced tube (full_tube.cpp)
 
   const double* on(Effect e) const { return p[static_cast<std::size_t>(index_of(e))]; }
@@ -94,6 +104,9 @@ class RigModel {
     std::vector<double> rest;      // natural curvature times the length, from the clamp to the tip
   };
   virtual BentThread bent_thread(const Trial&, const Setting&, Eigen::Index /*sample*/) const { return {}; }
+  /// Force over that of the linear law at a strain of one, where the largest past one is `most`.
+  virtual double press_law(const Trial&, const Setting&, double strain, double /*most*/) const { return strain; }
+  virtual double largest_strain() const { return 0.0; }  // of all records
   virtual double punch_stiffness(const Trial&, double /*poissons_ratio*/) const { return 1.0; }  // [m], force per depth and modulus
   /// A thread that slides over a cylinder: pull = hold exp(mu wrap), wrap negative where it runs back.
   struct Slide {

@@ -79,6 +79,21 @@ double stiffening(double e, double r, int kind, Mode mode) {
   }
 }
 
+}  // namespace
+
+double PressTable::at(double strain, double most) const {
+  if (load.empty() || peak <= 0.0 || strain <= 0.0) return load.empty() || strain > 0.0 ? 0.0 : most >= peak * (1.0 - 1e-9) ? unload[0] : 0.0;
+  const auto between = [](const std::vector<double>& v, double x) {
+    const double at = std::clamp(x, 0.0, 1.0) * kPoints;
+    const auto i = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kPoints - 1));
+    return v[i] + (at - static_cast<double>(i)) * (v[i + 1] - v[i]);
+  };
+  if (strain >= most) return between(load, strain / peak);
+  return most / peak * between(unload, strain / most);
+}
+
+namespace {
+
 class Tissue final : public RigModel {
  public:
   explicit Tissue(const Dataset& d) : RigModel(d) {
@@ -101,6 +116,8 @@ class Tissue final : public RigModel {
   std::vector<double> guess() const override;
   std::vector<Form> forms() const override;
   void rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const override;
+  double press_law(const Trial& t, const Setting& s, double strain, double most) const override;
+  double largest_strain() const override { return largest_; }
   double punch_stiffness(const Trial& t, double nu) const override {
     const Geometry g = geometry_of(data(), t);
     return g.factor / g.height / (1.0 - nu * nu);
@@ -109,6 +126,7 @@ class Tissue final : public RigModel {
  private:
   double modulus(const Geometry& g, const Setting& s) const;
   double elastic(double e, const Geometry& g, const Setting& s) const;
+  double chain(double e, double most, double top, const Geometry& g, const Setting& s) const;
   void elastic_history(const Trial& t, const Geometry& g, const Setting& s, Eigen::VectorXd& f) const;
   void drain(const Trial& t, const Geometry& g, const Setting& s, Eigen::VectorXd& f) const;
   void part(const Trial& t, const Geometry& g, const Setting& s, Eigen::VectorXd& f) const;
@@ -149,11 +167,30 @@ double Tissue::widening(const Geometry& g, const Setting& s) const {
   }
 }
 
+/// Stress over the modulus, of the strain less what has set; `top`: largest past energy over the modulus.
+double Tissue::chain(double e, double most, double top, const Geometry& g, const Setting& s) const {
+  if (const double* set = s.on(Effect::permanent_set)) {
+    const double peak = std::abs(e) > std::abs(most) ? e : most;
+    e -= set[0] * (s.form(Effect::permanent_set) == 0 ? peak : peak * std::abs(peak) / largest_);
+  }
+  double stress = elastic(e, g, s);
+  if (const double* soft = s.on(Effect::first_cycle_softening)) {
+    const double w = 0.5 * e * e, deficit = std::max(top - w, 0.0) / soft[1];
+    stress *= 1.0 - soft[0] * softening_share(deficit, s.form(Effect::first_cycle_softening));
+  }
+  return stress;
+}
+
+double Tissue::press_law(const Trial& t, const Setting& s, double strain, double most) const {
+  const double* set = s.on(Effect::permanent_set);
+  const double held = most - (set == nullptr ? 0.0 : set[0] * (s.form(Effect::permanent_set) == 0 ? most : most * most / largest_));
+  return chain(strain, most, 0.5 * held * held, geometry_of(data(), t), s);
+}
+
 void Tissue::elastic_history(const Trial& t, const Geometry& g, const Setting& s, Eigen::VectorXd& f) const {
   const Eigen::VectorXd& u = t.at(input_);
   const double* play = s.on(Effect::hysteresis);
   const double* set = s.on(Effect::permanent_set);
-  const double* soft = s.on(Effect::first_cycle_softening);
   const double* train = s.on(Effect::rig_compliance);
   const double stiff = modulus(g, s) * g.factor * widening(g, s);  // [N] per strain
   double held = u[0], most = 0.0, top = 0.0, force = 0.0;
@@ -161,17 +198,8 @@ void Tissue::elastic_history(const Trial& t, const Geometry& g, const Setting& s
     double x = u[n];
     if (play != nullptr) held = x = std::clamp(held, x - 0.5 * play[0], x + 0.5 * play[0]);
     const auto law = [&](double travel) {
-      double e = travel / g.height;
-      if (set != nullptr) {
-        const double peak = std::abs(e) > std::abs(most) ? e : most;
-        e -= set[0] * (s.form(Effect::permanent_set) == 0 ? peak : peak * std::abs(peak) / largest_);
-      }
-      double stress = elastic(e, g, s);
-      if (soft != nullptr) {
-        const double w = 0.5 * e * e, deficit = std::max(top - w, 0.0) / soft[1];
-        stress *= 1.0 - soft[0] * softening_share(deficit, s.form(Effect::first_cycle_softening));
-      }
-      return stiff * stress;
+      const double e = travel / g.height;
+      return stiff * (chain(e, most, top, g, s) + (s.press != nullptr ? s.press->at(e, std::max(most, e)) : 0.0));
     };
     if (train != nullptr) {  // force = law(x - C force), by the secant rule
       double a = force, fa = law(x - train[0] * a) - a;

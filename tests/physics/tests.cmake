@@ -3,6 +3,7 @@ foreach(name elastic_rod friction implicit_rod instrument linear_fem linear_fem_
 endforeach()
 filum_test(physics/pellet)
 filum_test(physics/pore_flow)
+filum_test(physics/tissue_law)
 filum_test(physics/needle)
 filum_test(physics/needle_shape)
 filum_test(physics/needle_track)

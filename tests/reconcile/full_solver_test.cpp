@@ -6,6 +6,8 @@
 
 #include <numbers>
 
+#include "physics/tissue_law.h"
+
 namespace filum::reconcile {
 namespace {
 
@@ -86,6 +88,48 @@ TEST(FullSolver, DrainageGoesWithTheSquareOfTheSizeAndLosesTheShareAskedFor) {
   // on deep tissue a punch's stiffness is as G/(1 - nu): the share asked for is lost but for the box's walls
   const Kernel blade = press_drainage(Vec3(50e-3, 50e-3, 50e-3), 5e-3, 5e-3, 0.48, 0.3, 2);
   EXPECT_NEAR(blade.rest, 0.7, 0.05);
+}
+
+/// A press of strain 0.1 on 40 x 40 x 20 mm by a blade of 10 x 5 mm.
+PressTable pressed(const TissueLaw& law, const std::function<double(double, double)>& reduced, int cells) {
+  const Vec3 box(40e-3, 40e-3, 20e-3);
+  const double square = local_strain_square(pressed_box(box, 10e-3, 5e-3, 2), box.z(), 0.45);
+  EXPECT_GT(square, 1.5);  // deep tissue is strained near the blade
+  return press_table(pressed_box(box, 10e-3, 5e-3, cells), box.z(), 0.45, law, square, 0.1, reduced);
+}
+
+TEST(FullSolver, ABladeOnStiffeningTissueAgreesWithDepthOverHeightToFirstOrder) {
+  TissueLaw law;
+  law.stiffening = 1e-3 / (6.0 * 0.01);  // a thousandth of the force at the peak
+  const auto linear = [](double e, double) { return e; };
+  const PressTable weak = pressed(law, linear, 2);
+  ASSERT_FALSE(weak.load.empty());
+  EXPECT_NEAR(weak.load.back() / (1e-3 * 0.1), 1.0, 0.15);  // the volume change, which does not stiffen, has a share of the energy
+  EXPECT_EQ(weak.load, weak.unload);
+  law.stiffening *= 400.0;
+  const PressTable strong = pressed(law, linear, 2), fine = pressed(law, linear, 3);
+  ASSERT_FALSE(strong.load.empty() || fine.load.empty());
+  EXPECT_LT(strong.load.back(), 400.0 * weak.load.back());  // the field gives way where it stiffens most
+  EXPECT_GT(strong.load.back(), 150.0 * weak.load.back());
+  EXPECT_NEAR(fine.load.back() / strong.load.back(), 1.0, 0.25);
+  std::printf("stiffening by 0.4 of the force at the peak: %.3f and %.3f of it on the mesh and a finer one\n", strong.load.back() / 0.04, fine.load.back() / 0.04);
+}
+
+TEST(FullSolver, ABladeComesBackWithWhatHasSetAndSoftened) {
+  TissueLaw set;
+  set.set = 0.1;
+  // the same share everywhere: unloaded, the linear tissue asks for a tenth less motion, but for the elements whose peak had another direction
+  const PressTable s = pressed(set, [](double e, double most) { return e - 0.1 * most; }, 2);
+  ASSERT_FALSE(s.load.empty());
+  for (const double c : s.unload) EXPECT_NEAR(c, 0.0, 2e-3);
+  TissueLaw soft;
+  soft.softening = 0.3;
+  soft.softening_energy = 1e-3;
+  const PressTable w = pressed(soft, [](double e, double) { return e; }, 2);
+  ASSERT_FALSE(w.load.empty());
+  EXPECT_NEAR(w.load.back(), 0.0, 1e-3);
+  EXPECT_LT(w.unload[2], -0.03 * 0.04);
+  EXPECT_GT(w.unload[2], -0.3 * 0.04);
 }
 
 }  // namespace
