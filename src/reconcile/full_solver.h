@@ -50,6 +50,9 @@ struct Block {
 Kernel block_drainage(const Block& block, double poissons_ratio, double share, bool ends, int cells);
 /// The same under a blade, drained at the free surface.
 Kernel press_drainage(const Vec3& box, double blade_length, double blade_width, double poissons_ratio, double share, int cells);
+/// Stiffness of a block over E A/h where Coulomb friction acts at both platens: equilibrium of an eighth of it under a growing compression, linear but for the
+/// platens' nodes, which hold or slide outwards (so the force is in proportion to the compression). On the way back no friction is turned round. NaN where not found.
+double platen_stiffening(const Block& block, double poissons_ratio, double friction, int cells);
 
 /// A tube without load, [m].
 struct TubeWall {

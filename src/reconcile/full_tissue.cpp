@@ -1,6 +1,6 @@
 // tissue-block and spatula-press by the trainer's tissue (physics/linear_fem, physics/pore_flow). Linear in the motion, so one equilibrium for each geometry
 // gives every force in proportion, and one relaxation after a sudden motion every record by superposition (Boltzmann).
-// A block without drainage or friction at its platens is homogeneous: nothing is asked of a mesh.
+// Friction at the platens is found under a growing compression, where it too is in proportion. A block without drainage or friction at its platens is homogeneous: nothing is asked of a mesh.
 
 #include <algorithm>
 #include <cmath>
@@ -119,6 +119,51 @@ Kernel block_drainage(const Block& block, double poissons_ratio, double share, b
   return over_sudden(draining_force(body));
 }
 
+double platen_stiffening(const Block& block, double poissons_ratio, double friction, int cells) {
+  TetMesh mesh = box_mesh(Vec3::Zero(), Vec3::Constant(cells), cells, cells, cells);
+  for (Eigen::Index i = 0; i < mesh.nodes.cols(); ++i) {
+    const double x = mesh.nodes(0, i), y = mesh.nodes(1, i), ring = std::max(x, y);
+    const double angle = ring == 0.0 ? 0.0 : 0.25 * std::numbers::pi * (x >= y ? y / ring : 2.0 - x / ring);
+    if (block.round) mesh.nodes.col(i).head<2>() = 0.5 * block.width * ring / cells * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    else mesh.nodes.col(i).head<2>() = 0.5 / cells * Eigen::Vector2d(block.width * x, block.depth * y);
+    mesh.nodes(2, i) *= 0.5 * block.height / cells;
+  }
+  FemOptions o;
+  o.averaged_pressure = true;
+  o.solver.relative = 1e-6;
+  o.solver.max_iterations = 4000;
+  LinearFem fem(mesh, {{1.0, poissons_ratio, 1000.0}}, o, "block");
+  const double deep = 0.5 * block.height, still = 1e-3 * deep * block.width / block.height;  // at a strain of one; below this slip a node holds
+  std::vector<MovedNode> moved;
+  for (int i = 0; i < mesh.n_nodes(); ++i) {
+    const Vec3 p = mesh.nodes.col(i);
+    const double firm = 1e3 * fem.nodal_stiffness(i);
+    const bool top = p.z() > deep * (1.0 - 1e-9);
+    MovedNode m{i, false, Vec3(0, 0, top ? -deep : 0.0), Mat3::Zero()};
+    const Vec3 k(p.x() < 1e-12 ? firm : 0.0, p.y() < 1e-12 ? firm : 0.0, top || p.z() < 1e-12 ? firm : 0.0);
+    m.stiffness = k.asDiagonal();
+    if (!k.isZero()) moved.push_back(m);
+  }
+  FemState s = fem.rest();
+  double force = 0.0, before = -1.0;
+  for (int k = 0; k < 60 && std::abs(force - before) > 1e-5 * std::abs(force); ++k) {  // friction as the spring that has its force at the slip found last
+    if (!fem.equilibrium(s, moved).sound) return NAN;
+    before = force;
+    force = 0.0;
+    for (MovedNode& m : moved) {
+      if (m.target.z() == 0.0) continue;
+      force -= m.force.z();
+      const Vec3 p = mesh.nodes.col(m.node);
+      const double drag = friction * std::max(0.0, -m.force.z()) / (s.u.col(m.node).head<2>().norm() + still);
+      for (int c = 0; c < 2; ++c)
+        if (p[c] >= 1e-12) m.stiffness(c, c) = drag;
+    }
+  }
+  double volume = 0.0;  // of the mesh: a cylinder's is a little less than the cylinder's
+  for (int e = 0; e < mesh.n_tets(); ++e) volume += tet_volume(mesh, e);
+  return force * deep / volume;
+}
+
 namespace {
 
 class TissueSolver final : public FullSolver {
@@ -126,11 +171,16 @@ class TissueSolver final : public FullSolver {
   explicit TissueSolver(const RigModel& model) : model_(model) {}
   std::string name() const override { return "the trainer's tissue (physics/linear_fem)"; }
   bool needed(const std::vector<const Form*>& forms) const override {
-    return press() || std::any_of(forms.begin(), forms.end(), [](const Form* f) { return f->effect == Effect::poroelastic_drainage; });
+    return press() || std::any_of(forms.begin(), forms.end(), [](const Form* f) { return f->effect == Effect::poroelastic_drainage || f->effect == Effect::platen_friction; });
   }
 
   bool run(const Trial& t, const Setting& s, bool fine, Eigen::MatrixXd& out) const override {
     Setting on_mesh = s;
+    double stiffer = 1.0;
+    if (const double* p = s.on(Effect::platen_friction); p != nullptr && t.word("mode") != "shear") {
+      stiffer = between_platens(t, s.base[1], p[0], fine);
+      on_mesh.p[static_cast<std::size_t>(index_of(Effect::platen_friction))] = nullptr;
+    }
     Kernel drained;
     if (const double* p = s.on(Effect::poroelastic_drainage); p != nullptr && (press() || t.word("mode") != "shear")) {
       drained = drainage(t, s.base[1], p[1], s.form(Effect::poroelastic_drainage) % 2 == 1, fine);
@@ -145,7 +195,8 @@ class TissueSolver final : public FullSolver {
       if (pressed.load.empty()) return false;
     }
     model_.rig(t, on_mesh, out);
-    if (!press()) return true;
+    out *= stiffer;
+    if (!press()) return std::isfinite(stiffer);
     const double ratio = stiffness(t, s.base[1], fine) / model_.punch_stiffness(t, s.base[1]);
     for (Eigen::Index c = 0; c < out.cols(); ++c) {
       const std::string& name = model_.data().outputs[static_cast<std::size_t>(c)];
@@ -160,6 +211,19 @@ class TissueSolver final : public FullSolver {
   std::array<double, 5> sizes(const Trial& t) const {
     const Vec3 box(t.size("length"), t.size("width"), t.size("height"));
     return {box.x(), box.y(), box.z(), std::min(t.size("blade_length"), 0.98 * box.x()), std::min(t.size("blade_width"), 0.98 * box.y())};
+  }
+  static Block block_of(const Trial& t) {
+    if (t.shape == "cylinder") return {t.size("diameter"), t.size("diameter"), t.size("height"), true};
+    return {t.size("length"), t.size("width"), t.size("height"), false};
+  }
+  double between_platens(const Trial& t, double nu, double friction, bool fine) const {
+    const Block b = block_of(t);
+    nu = std::min(nu, 0.49);
+    friction = std::exp(5e-3 * std::round(200.0 * std::log(friction)));
+    const std::vector<double> key = {b.width, b.depth, b.height, b.round ? 1.0 : 0.0, nu, friction, fine ? 1.0 : 0.0};
+    const auto found = known_.find(key);
+    if (found != known_.end()) return found->second;
+    return known_[key] = platen_stiffening(b, nu, friction, fine ? 8 : 5);
   }
   double stiffness(const Trial& t, double nu, bool fine) const {
     const auto [x, y, z, length, width] = sizes(t);
@@ -205,8 +269,7 @@ class TissueSolver final : public FullSolver {
       const auto [x, y, z, length, width] = sizes(t);
       return relaxing_[key] = press_drainage(Vec3(x, y, z), length, width, nu, share, fine ? 3 : 2);
     }
-    const Block block = round ? Block{t.size("diameter"), t.size("diameter"), t.size("height"), true} : Block{t.size("length"), t.size("width"), t.size("height"), false};
-    return relaxing_[key] = block_drainage(block, nu, share, ends, fine ? 8 : 5);
+    return relaxing_[key] = block_drainage(block_of(t), nu, share, ends, fine ? 8 : 5);
   }
   const RigModel& model_;
   mutable std::map<std::vector<double>, double> known_;

@@ -90,6 +90,22 @@ TEST(FullSolver, DrainageGoesWithTheSquareOfTheSizeAndLosesTheShareAskedFor) {
   EXPECT_NEAR(blade.rest, 0.7, 0.05);
 }
 
+TEST(FullSolver, PlatenFrictionStartsAsBettisTheoremAndEndsAsABondedBlock) {
+  // to first order the tractions mu p inwards work through the free block's widening nu r/h on both faces: 1 + (2/3) mu nu D/h (Betti); with nu = 1/2 Siebel's 1 + mu D/(3 h)
+  const Block disc{8e-3, 8e-3, 4e-3, true};
+  const double nu = 0.45, mu = 0.02, first = 2.0 / 3.0 * mu * nu * 2.0;
+  const double coarse = platen_stiffening(disc, nu, mu, 4), fine = platen_stiffening(disc, nu, mu, 8);
+  EXPECT_NEAR((fine - 1.0) / first, 1.0, 0.06);
+  EXPECT_NEAR(coarse / fine, 1.0, 3e-3);
+  EXPECT_NEAR(platen_stiffening(disc, nu, 0.0, 4), 1.0, 2e-3);
+  // bonded, nearly incompressible: 1 + 2 S^2, S = D/(4 h) (Gent & Lindley, Proc. Inst. Mech. Eng. 173:111, 1959)
+  const Block flat{16e-3, 16e-3, 4e-3, true};
+  const double held = platen_stiffening(flat, 0.49, 50.0, 8);
+  EXPECT_NEAR(held / 3.0, 1.0, 0.15);
+  EXPECT_LT(platen_stiffening(flat, 0.49, 0.1, 8), held);
+  std::printf("block D = 2 h, mu 0.02: %.4f of Betti's first order; bonded D = 4 h: %.3f (Gent & Lindley 3)\n", (fine - 1.0) / first, held);
+}
+
 /// A press of strain 0.1 on 40 x 40 x 20 mm by a blade of 10 x 5 mm.
 PressTable pressed(const TissueLaw& law, const std::function<double(double, double)>& reduced, int cells) {
   const Vec3 box(40e-3, 40e-3, 20e-3);
