@@ -119,6 +119,13 @@ Json report_json(const Dataset& d, const Result& r) {
 
 namespace {
 
+/// The effect with the values that a scene runs it with: a diffusivity is that of Biot's theory, as the mesh found it, not that of the series.
+const NamedEffect& as_run(const NamedEffect& e, const Result& r) {
+  if (e.effect != Effect::poroelastic_drainage || !r.confirmation || !r.confirmation->holds) return e;
+  const auto at = std::find_if(r.confirmation->values.begin(), r.confirmation->values.end(), [](const NamedEffect& v) { return v.effect == Effect::poroelastic_drainage; });
+  return at == r.confirmation->values.end() ? e : *at;
+}
+
 /// A relaxation that is not made of exponentials, as the sum of them that a scene can run.
 std::string spectrum_text(const NamedEffect& e) {
   const auto of = [&](const char* name) {
@@ -153,7 +160,8 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
   for (const Estimate& e : r.baseline) value(e, "  ");
   if (r.baseline.empty()) s << "  {}\n";
   s << "effects:\n";
-  for (const NamedEffect& e : r.effects) {
+  for (const NamedEffect& named : r.effects) {
+    const NamedEffect& e = as_run(named, r);
     s << "  - name: " << info(e.effect).name << "\n    on: true\n    form: \"" << e.form << "\"\n    parameters:\n";
     for (const Estimate& p : e.parameters) value(p, "      ");
     s << spectrum_text(e);

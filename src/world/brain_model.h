@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "physics/linear_fem.h"
+#include "physics/pore_flow.h"
 #include "physics/spatula_contact.h"
+#include "physics/tissue_law.h"
 #include "world/brain_observation.h"
 #include "world/cortex.h"
 
@@ -39,6 +41,8 @@ struct BrainModel {
   Cortex cortex;
   std::vector<FemMaterial> regions;
   FemOptions fem;
+  TissueLaw law;       // of the elements; linear: none of it takes part
+  Drainage drainage;   // diffusivity 0: none
   SpatulaParameters contact;
   std::vector<std::vector<BladeShape>> blades;  // of each blade the forms it can be given, as many of each, the first to start with
   std::vector<std::string> blade_names;
@@ -75,6 +79,9 @@ struct BladeState {
 
 struct BrainState {
   FemState fem;
+  TissueMemory memory;                  // of the elements; empty where the law is linear
+  Eigen::VectorXd content;              // fluid gained per volume, of each node; empty where nothing drains
+  Points relaxed_push;                  // [N], 3 x (n terms): what relaxation has taken of the pushes of law and fluid, as fem.w of the elastic force
   Points seen;                          // [m], 3 x n, displacement when contacts were last looked for
   std::vector<BladeContact> contacts;
   std::vector<BladeState> blades;

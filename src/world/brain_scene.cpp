@@ -89,11 +89,18 @@ BrainScene::BrainScene(std::shared_ptr<const BrainModel> model)
   stiffness_.assign(blades_.size(), Mat3::Zero());
   probes_.reserve(n + falx_.size());
   fem_.prepare_response();
+  if (!model_->law.linear()) law_.emplace(model_->cortex.mesh, model_->regions, model_->law);
+  if (model_->drainage.diffusivity > 0.0) pores_.emplace(model_->cortex.mesh, model_->regions, model_->drainage, model_->name);
+  push_ = loads_;
+  open_.assign(n, 0);
 }
 
 BrainState BrainScene::start() const {
   BrainState s;
   s.fem = fem_.rest();
+  if (law_) s.memory = law_->start();
+  if (pores_) s.content = Eigen::VectorXd::Zero(s.fem.u.cols());
+  if (law_ || pores_) s.relaxed_push = s.fem.w;
   s.seen = s.fem.u;
   s.contacts.reserve(model_->cortex.surface_nodes.size());
   for (std::size_t i = 0; i < blades_.size(); ++i) {
@@ -110,14 +117,36 @@ void BrainScene::step(const Inputs& inputs, BrainState& s, std::array<std::int32
   find_candidates(s);
   contact_.update(fem_, s.fem.u, s.seen, blades_, candidates_, s.contacts);
   falx_.append(fem_, s.fem.u, contact_.moved());
+  const bool pushed = law_ || pores_;
+  if (pushed) loads_.setZero();
   pull_veins(s, o);
+  if (pushed) push_tissue(s);
   s.seen = s.fem.u;
   summary_ = fem_.step(s.fem, contact_.moved(), &loads_);
   if (!summary_.sound) event(o, "solver-trouble", -1, summary_.residual, "N");
+  if (law_) law_->remember(s.fem.u, s.memory);
   contact_.read(fem_, s.fem.u, blades_, s.contacts);
   feel(s, o.step);
   report(s, o);
   if (o.step % kLookEvery == 0) s.exposed = exposed_share(s);
+}
+
+/// What the elements' law and the fluid add, relaxing as the elastic force does.
+void BrainScene::push_tissue(BrainState& s) noexcept {
+  const FemOptions& o = fem_.options();
+  push_.setZero();
+  if (law_) law_->push(s.fem.u, s.memory, s.fem.removed, push_);
+  if (pores_) {
+    for (const int i : model_->cortex.surface_nodes) open_[static_cast<std::size_t>(i)] = 1;
+    for (const BladeContact& c : s.contacts) open_[static_cast<std::size_t>(c.node)] = 0;
+    pores_->step(s.fem.u, open_, o.dt * model_->time_compression, s.content, push_);
+  }
+  loads_ += push_;
+  for (std::size_t k = 0; k < o.relaxation.size(); ++k) {
+    auto relaxed = s.relaxed_push.middleCols(static_cast<Eigen::Index>(k) * push_.cols(), push_.cols());
+    relaxed += (1.0 - std::exp(-o.dt / o.relaxation[k].time)) * (push_ - relaxed);
+    loads_ -= o.relaxation[k].share * relaxed;
+  }
 }
 
 void BrainScene::move_blades(const Inputs& inputs, BrainState& s, std::array<std::int32_t, 3>& valid, Observation& o) noexcept {
@@ -404,8 +433,10 @@ std::array<std::pair<const char*, std::uint64_t>, 8> brain_hashes(const BrainSta
   }
   std::uint64_t rest = hash_bytes(&s.exposed, sizeof s.exposed, hash_bytes(s.torn.data(), s.torn.size() * sizeof(std::int32_t)));
   rest = hash_bytes(s.fem.removed.data(), s.fem.removed.size(), rest);
+  const auto chain = [](const auto& m, std::uint64_t h) { return m.size() == 0 ? h : hash_bytes(m.data(), sizeof(double) * static_cast<std::size_t>(m.size()), h); };
+  const std::uint64_t relaxed = chain(s.relaxed_push, chain(s.content, chain(s.memory.top, chain(s.memory.peak, points(s.fem.w)))));
   return {{{"brain_displacement", points(s.fem.u)}, {"brain_velocity", points(s.fem.v)}, {"brain_acceleration", points(s.fem.a)},
-           {"brain_relaxed", points(s.fem.w)},      {"brain_seen", points(s.seen)},      {"brain_contacts", contacts},
+           {"brain_relaxed", relaxed},      {"brain_seen", points(s.seen)},      {"brain_contacts", contacts},
            {"brain_blades", blades},                {"brain_flags", rest}}};
 }
 

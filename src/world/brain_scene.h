@@ -2,6 +2,7 @@
 // The step of a scene with a brain: blades follow their hands, tissue follows the blades, pressure is measured.
 
 #include <memory>
+#include <optional>
 
 #include "collision/surface_tree.h"
 #include "world/brain_model.h"
@@ -32,6 +33,7 @@ class BrainScene {
   const RigidSurface& surface_of(std::size_t i, const BladeState& blade) const noexcept { return surfaces_[i][static_cast<std::size_t>(blade.form)]; }
   void find_candidates(const BrainState& s) noexcept;
   void pull_veins(BrainState& s, Observation& o) noexcept;
+  void push_tissue(BrainState& s) noexcept;
   void measure(const BrainState& s, Observation& o) noexcept;
   void feel(const BrainState& s, std::uint64_t step) noexcept;
   void report(BrainState& s, Observation& o) noexcept;
@@ -41,6 +43,10 @@ class BrainScene {
 
   std::shared_ptr<const BrainModel> model_;
   LinearFem fem_;
+  std::optional<ElementLaw> law_;
+  std::optional<PoreFlow> pores_;
+  std::vector<char> open_;          // nodes of the surface that no blade covers: fluid leaves there
+  Points push_;                     // [N], of law and fluid on all nodes
   SpatulaContact contact_;
   SurfaceTree tree_;
   BrainSection section_;

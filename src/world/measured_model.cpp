@@ -54,6 +54,30 @@ bool MeasuredModel::is_one(const std::string& path) {
   }
 }
 
+/// What physics/tissue_law and physics/pore_flow show; false for another effect.
+bool MeasuredModel::read_tissue(const std::string& name, const YamlNode& effect, const YamlNode& parameters) {
+  const std::string form = effect.text_or("form", "");
+  const Range share{0.0, 1.0, true};
+  const bool block = rig_ == "tissue-block";
+  if (name == "strain-stiffening" && block) {
+    law_.stiffening = estimate(parameters, "c20_over_c10", "-", Range::positive());
+    law_.exponential = form == "exponential" || form == "Demiray";
+  } else if (name == "first-cycle-softening" && block) {
+    law_.softening = estimate(parameters, "d", "-", share);
+    softening_energy_ = estimate(parameters, "W0", "Pa", Range::positive());
+    law_.softening_form = form.starts_with("error") ? 1 : form.starts_with("x/(1 + x)") ? 2 : 0;
+  } else if (name == "permanent-set") {
+    if (form.starts_with("grows")) effect.refuse("form", "fraction of the largest past strain: of one that grows with its square the file does not say where it is itself");
+    law_.set = estimate(parameters, "fraction", "-", share);
+  } else if (name == "poroelastic-drainage") {
+    diffusivity_ = estimate(parameters, "diffusivity", "m2/s", Range::positive());
+    share_ = estimate(parameters, "drained_share", "-", {0.0, 0.95, true});
+  } else {
+    return false;
+  }
+  return true;
+}
+
 void MeasuredModel::read_effect(const YamlNode& effect) {
   const std::string name = effect.text("name");
   const bool on = effect.flag_or("on", true) && on_;
@@ -64,6 +88,7 @@ void MeasuredModel::read_effect(const YamlNode& effect) {
     return;
   }
   const bool tissue = rig_ == "tissue-block" || rig_ == "spatula-press";
+  if (tissue && read_tissue(name, effect, parameters)) return;
   if (tissue && name == "viscoelastic-relaxation") relaxation_ = read_relaxation(effect, parameters);
   else if (rig_ == "suture-cantilever" && name == "rest-curvature") curvature_ = read_curvature(effect, parameters);
   else
@@ -103,6 +128,7 @@ void MeasuredModel::apply(BrainModel& brain, double dt, double compression) cons
   }
   if (poisson_)
     for (FemMaterial& tissue : brain.regions) tissue.poisson = *poisson_;
+  apply_tissue(brain);
   if (relaxation_.empty()) return;
   brain.fem.relaxation.clear();
   double at_once = 0.0;
@@ -111,6 +137,17 @@ void MeasuredModel::apply(BrainModel& brain, double dt, double compression) cons
   for (FemMaterial& tissue : brain.regions) tissue.young *= 1.0 - at_once;
   for (const RelaxationTerm& t : relaxation_)
     if (t.time >= kSteps * dt * compression) brain.fem.relaxation.push_back({t.share / (1.0 - at_once), t.time});
+}
+
+void MeasuredModel::apply_tissue(BrainModel& brain) const {
+  constexpr double kStiffest = 3.0;  // of the secant: the law is taken of the displacements before (tissue_law.h)
+  const FemMaterial& grey = brain.regions.front();
+  if (!law_.linear()) {
+    brain.law = law_;
+    brain.law.softening_energy = softening_energy_ > 0.0 ? softening_energy_ / grey.young : 1.0;
+    brain.law.limit = kStiffest;
+  }
+  if (diffusivity_ > 0.0) brain.drainage = {diffusivity_, rig_ == "tissue-block" ? poisson_by_block(share_, grey.poisson) : poisson_by_punch(share_, grey.poisson)};
 }
 
 void MeasuredModel::apply_to_thread(Model& scene) const {

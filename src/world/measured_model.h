@@ -2,7 +2,9 @@
 // A model as `filum reconcile` writes it (filum-model/1: a rig's baseline with the effects its measurements showed) put into a scene.
 //   tissue-block, spatula-press -> a scene with a brain: youngs_modulus of the grey matter, white keeping its ratio to grey,
 //     poissons_ratio of both; viscoelastic-relaxation as a Prony series in place of the scene's own relaxation, with the modulus that of
-//     a sudden load (g(0) = 1), as in the rig.
+//     a sudden load (g(0) = 1), as in the rig;
+//     strain-stiffening, first-cycle-softening (of a block: a press has them by depth over height, which is no strain of the tissue's), permanent-set
+//     in each element (physics/tissue_law); poroelastic-drainage through the surface that no blade covers (physics/pore_flow).
 //   suture-cantilever, suture-pull -> a scene with a thread: youngs_modulus scales EA, EI and GJ by E pi d^4/64 over the scene's EI;
 //     friction_coefficient is thread on thread; rest-curvature is the thread's, in the plane of the sheet.
 // Whatever the scene cannot show is refused; `on: false` at an effect, or at the top for the whole file, leaves it out, and what is
@@ -14,6 +16,7 @@
 
 #include "physics/elastic_rod.h"
 #include "physics/linear_fem.h"
+#include "physics/tissue_law.h"
 
 namespace filum {
 
@@ -34,12 +37,17 @@ class MeasuredModel {
 
  private:
   void read_effect(const YamlNode& effect);
+  bool read_tissue(const std::string& name, const YamlNode& effect, const YamlNode& parameters);
+  void apply_tissue(BrainModel& brain) const;
   [[noreturn]] void refuse_rig(const std::string& scene, const std::string& rigs) const;
 
   std::string file_, rig_;
   bool on_ = true;
   std::optional<double> young_, poisson_, friction_, curvature_;  // [Pa], [-], [-], [1/m]
   std::vector<RelaxationTerm> relaxation_;
+  TissueLaw law_;
+  double softening_energy_ = 0.0;            // [Pa]
+  double diffusivity_ = 0.0, share_ = 0.0;   // [m2/s], [-] of the stiffness that drains away
 };
 
 /// Gives a thread a natural curvature [1/m] in the horizontal plane, towards the left of its direction.

@@ -111,6 +111,51 @@ TEST_F(MeasuredModelTest, FastTermsActAtOnceAndASpectrumIsTakenTermByTerm) {
   EXPECT_NEAR(m->brain->fem.relaxation[0].share, 0.5, 1e-12);
 }
 
+/// Force on the blade [N] at the ends of: a press to 12 mm below the start, a return to 10 mm, a second press to 11 mm, each at 20 mm/s with 0.3 s of rest.
+std::array<double, 3> two_presses(const std::shared_ptr<const Model>& model) {
+  World world(model);
+  const double dt = world.description().dt;
+  std::array<double, 3> force{};
+  double at = 0.0;
+  const double to[] = {12e-3, 10e-3, 11e-3};
+  for (std::size_t leg = 0; leg < 3; ++leg) {
+    for (int k = 0; k < static_cast<int>(std::lround(0.9 / dt)); ++k) {
+      at += std::clamp(to[leg] - at, -20e-3 * dt, 20e-3 * dt);
+      world.step(inputs_at(world, at));
+    }
+    force[leg] = world.observation().brain.blades[0].force_W.norm();
+  }
+  return force;
+}
+
+TEST_F(MeasuredModelTest, TissueStiffensSoftensAndSetsAsItsModelSays) {
+  const std::string own = "{ youngs_modulus: { value: \"2900 Pa\" }, poissons_ratio: { value: \"0.45\" } }";
+  const auto with = [&](const std::string& effect) { return two_presses(scene("press-to-target", file("tissue-block", own, "\n  - " + effect))); };
+  const auto plain = two_presses(scene("press-to-target"));
+  const auto stiff = with("{ name: strain-stiffening, form: Yeoh, parameters: { c20_over_c10: { value: \"10\" } } }");
+  EXPECT_GT(stiff[0], 1.03 * plain[0]);
+  EXPECT_GT(stiff[0] / plain[0], stiff[1] / plain[1]);  // more where there is more strain
+  const auto soft = with("{ name: first-cycle-softening, form: exponential in the energy, parameters: { d: { value: \"0.4\" }, W0: { value: \"3 Pa\" } } }");
+  EXPECT_NEAR(soft[0] / plain[0], 1.0, 0.03);           // the first way in is that of the tissue as it was
+  EXPECT_LT(soft[2], 0.97 * plain[2]);
+  const auto set = with("{ name: permanent-set, form: fraction of the largest past strain, parameters: { fraction: { value: \"0.15\" } } }");
+  EXPECT_LT(set[1], 0.95 * plain[1]);
+  EXPECT_LT(set[0], plain[0]);
+}
+
+TEST_F(MeasuredModelTest, TissueDrainsUnderARestingBlade) {
+  const std::string own = "{ youngs_modulus: { value: \"2900 Pa\" }, poissons_ratio: { value: \"0.45\" } }";
+  // fluid leaves within a second or two where the blade has displaced it: the force falls, that of the faster tissue first
+  const auto forces = [&](const std::string& D) {
+    return retraction(scene("press-to-target", file("tissue-block", own, "\n  - { name: poroelastic-drainage, form: radial drainage, parameters: { diffusivity: { value: \"" + D + "\" }, drained_share: { value: \"0.3\" } } }")));
+  };
+  const auto plain = retraction(scene("press-to-target")), fast = forces("2e-5 m2/s"), slow = forces("1e-7 m2/s");
+  EXPECT_LT(fast.back(), 0.9 * plain.back());
+  EXPECT_GT(fast.back(), 0.35 * plain.back());
+  EXPECT_GT(slow.back(), 0.9 * plain.back());
+  EXPECT_LT(slow.back(), plain.back());
+}
+
 TEST_F(MeasuredModelTest, AThreadTakesItsMeasuredStiffnessFrictionAndCurl) {
   const auto plain = scene("knot-throw");
   const auto stiff = scene("knot-throw", file("suture-cantilever", "{ youngs_modulus: { value: \"5 GPa\" } }", "\n  - { name: rest-curvature, form: uniform, parameters: { curvature: { value: \"40 1/m\" } } }"));
@@ -138,8 +183,9 @@ TEST_F(MeasuredModelTest, WhatASceneCannotShowIsRefusedByName) {
     return "";
   };
   const std::string stiffening = "\n  - { name: strain-stiffening, form: Yeoh, parameters: { c20_over_c10: { value: \"3\" } } }";
-  EXPECT_NE(refused("press-to-target", file("tissue-block", "{}", stiffening)).find("strain-stiffening"), std::string::npos);
-  EXPECT_EQ(refused("press-to-target", file("tissue-block", "{}", "\n  - { name: strain-stiffening, on: false, parameters: { c20_over_c10: { value: \"3\" } } }")), "");
+  EXPECT_NE(refused("press-to-target", file("spatula-press", "{}", stiffening)).find("strain-stiffening"), std::string::npos);  // by depth over height
+  EXPECT_NE(refused("press-to-target", file("tissue-block", "{}", "\n  - { name: platen-friction, parameters: { friction_coefficient: { value: \"3\" } } }")).find("platen-friction"), std::string::npos);
+  EXPECT_EQ(refused("press-to-target", file("spatula-press", "{}", "\n  - { name: strain-stiffening, on: false, parameters: { c20_over_c10: { value: \"3\" } } }")), "");
   EXPECT_NE(refused("knot-throw", file("tissue-block", "{}", relaxing())).find("suture-cantilever"), std::string::npos);
   EXPECT_NE(refused("press-to-target", file("suture-pull", "{ friction_coefficient: { value: \"0.2\" } }", " []")).find("spatula-press"), std::string::npos);
   EXPECT_NE(refused("press-to-target", file("tissue-block", "{ youngs_modulus: { value: \"-1 Pa\" } }", " []")), "");
