@@ -9,28 +9,47 @@
 //   fibres       neo-Hookean + sum over two families of (k1/2 k2) [exp(k2 (I_i - 1)^2) - 1] where I_i > 1, I_i = a_i . C a_i
 //                (Holzapfel, Gasser & Ogden, J. Elasticity 61:1, 2000, eq. 62-65; invariants not split off their volume part:
 //                Sansour, Eur. J. Mech. A 27:28, 2008). mu is their c.
-//   yeoh         neo-Hookean + c20 (I1 - 3)^2   (Yeoh, Rubber Chem. Technol. 66:754, 1993, its first two terms)
+// Beside neo-Hookean and fibres, each where its number is not zero:
+//   c20          c20 (I1 - 3)^2                                  (Yeoh, Rubber Chem. Technol. 66:754, 1993, its first two terms)
+//   growth b     (mu/2) [(exp(b (I1 - 3)) - 1)/b - (I1 - 3)]     (Demiray, J. Biomech. 5:309, 1972: with mu's part (mu/2b)(exp(b (I1 - 3)) - 1))
+//   tone         dPsi = S f(l) dl/l, l the stretch along the first direction (around a vessel): Cauchy stress S f(l) of smooth muscle,
+//                f a parabola from 0 where l = 1 to 1 where it is best (Rachev & Hayashi, Ann. Biomed. Eng. 27:459, 1999), or a bell
 // The terms in J have at J = 1 the stress and the stiffness of mu ln J and (l/2)(J - 1)^2; the last grows without bound as a point is
 // squashed. `l` here is the point's share of Lame's constant (see vessel_wall_element.h); what resists the change of an
 // element's whole volume is added there. Exponents above kLargestExponent are continued by a straight line of stress.
-// Neglects: fibre dispersion, viscoelasticity, active tone, damage. Test: hyperelastic_test.
+// Neglects: fibre dispersion, viscoelasticity; tone's time course. Test: hyperelastic_test.
 
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "physics/vessel_wall_lanes.h"
 
 namespace filum {
 
+/// Active stress of smooth muscle around a vessel, as a function of its stretch.
+struct MuscleTone {
+  enum class Shape { parabola, bell };
+  Shape shape = Shape::parabola;
+  double stress = 0.0;  // [Pa], Cauchy, the most; 0: none
+  double best = 1.3;    // [-], stretch at which it has it, above 1
+  /// Share of the stress at stretch l; none at 1 and below.
+  double share(double l) const noexcept;
+  /// Stretch from which on there is none again.
+  double end() const noexcept;
+};
+
 struct WallLaw {
-  enum class Kind { linear, neo_hookean, fibres, yeoh };
+  enum class Kind { linear, neo_hookean, fibres };
   Kind kind = Kind::linear;
   double mu = 0.0;      // [Pa], shear modulus
   double lambda = 0.0;  // [Pa], Lame's second constant
   double k1 = 0.0;      // [Pa], fibres
   double k2 = 1.0;      // [-]
   double beta = 0.0;    // [rad], angle of the fibres +- to the circumference
-  double c20 = 0.0;     // [Pa], yeoh
+  double c20 = 0.0;     // [Pa], stiffening
+  double growth = 0.0;  // [-], of the exponential
+  MuscleTone tone;
 
   static WallLaw hooke(double young, double poisson);
   /// Lame's share that belongs to points, such that a plate of one element through its thickness bends as plane stress
@@ -58,7 +77,10 @@ struct LawConstants {
   double k1, k2;
   double strain_end;         // I - 1 where the exponential ends
   double slope_end;          // d2Psi/dI2 [Pa] there and beyond
-  double c20;
+  double c20, growth;
+  double growth_end, growth_slope;  // I1 - 3 where that exponential ends, d2Psi/dI1^2 [Pa] beyond
+  std::vector<double> tone_slope, tone_energy;  // [Pa]: dPsi/dI and Psi at I - 1 = k tone_step, I = l^2; straight between; empty: no tone
+  double tone_step = 1.0;
 };
 inline constexpr double kLargestExponent = 12.0;
 inline constexpr double kTiny = 1e-12;  // least J^2: so that no number of a squashed element is infinite
@@ -96,6 +118,36 @@ S fibre_energy(const LawConstants& c, const S& e_all, S& slope) noexcept {
   return c.k1 / (2.0 * c.k2) * (power - 1.0) + c.k1 * inside * power * beyond + 0.5 * c.slope_end * beyond * beyond;
 }
 
+/// Psi of the isotropic stiffening at I1 - 3 = e and dPsi/dI1.
+template <class S>
+S stiffening_energy(const LawConstants& c, const S& e, S& slope) noexcept {
+  slope = 2.0 * c.c20 * e;
+  S energy = c.c20 * e * e;
+  if (c.growth <= 0.0) return energy;
+  const S inside = least_of(e, S(c.growth_end)), beyond = e - inside, rise = 0.5 * c.mu * (exp_of(c.growth * inside) - 1.0);
+  slope = slope + rise + c.growth_slope * beyond;
+  return energy + rise / c.growth - 0.5 * c.mu * inside + rise * beyond + 0.5 * c.growth_slope * beyond * beyond;
+}
+
+/// Psi of the tone at I - 1 = e and dPsi/dI, and where wanted d2Psi/dI2.
+double tone_energy(const LawConstants& c, double e, double& slope, double* bend = nullptr) noexcept;
+template <class N>
+Lanes<N> tone_energy(const LawConstants& c, const Lanes<N>& e, Lanes<N>& slope) noexcept {
+  Lanes<N> energy;
+  for (int k = 0; k < Lanes<N>::kWidth; ++k) {
+    double own = 0.0;
+    energy.set(k, tone_energy(c, static_cast<double>(e[k]), own));
+    slope.set(k, own);
+  }
+  return energy;
+}
+
+/// 1/G_11: C_11 over the square of the first basis vector's length is the square of the stretch along it.
+template <class S>
+S around(const LawGeometry<S>& g) noexcept {
+  return g.inverse_root * g.inverse_root / (g.metric[1] * g.metric[2] - g.metric[4] * g.metric[4]);
+}
+
 /// mu E:E of the linear law and its derivatives, which need C raised to both upper indices.
 template <class S>
 S green_energy(const LawConstants& c, const LawGeometry<S>& g, const S* C, S* T) noexcept {
@@ -125,10 +177,16 @@ S law_energy(const LawConstants& c, const LawGeometry<S>& g, const S* C, const S
   const S pressure = stiff * (1.0 + inverse * inverse) - c.mu;
   for (int m = 0; m < 6; ++m) T[m] = (m < 3 ? 0.5 : 1.0) * c.mu * g.metric[m] + pressure * dJ[m];
   S energy = 0.5 * c.mu * (first_invariant(g, C) - 3.0) + 0.5 * stiff * spread - c.mu * (J - 1.0);
-  if (c.kind == WallLaw::Kind::yeoh) {
-    const S excess = first_invariant(g, C) - 3.0, slope = 2.0 * c.c20 * excess;
+  if (c.c20 > 0.0 || c.growth > 0.0) {
+    S slope;
+    energy = energy + stiffening_energy(c, S(first_invariant(g, C) - 3.0), slope);
     for (int m = 0; m < 6; ++m) T[m] = T[m] + (m < 3 ? 1.0 : 2.0) * slope * g.metric[m];
-    return energy + c.c20 * excess * excess;
+  }
+  if (!c.tone_slope.empty()) {
+    const S way = around(g);
+    S slope;
+    energy = energy + tone_energy(c, S(way * C[0] - 1.0), slope);
+    T[0] = T[0] + slope * way;
   }
   if (c.kind != WallLaw::Kind::fibres) return energy;
   for (const auto& a : g.fibre) {

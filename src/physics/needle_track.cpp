@@ -83,9 +83,9 @@ void NeedleTracks::hold_point(const VesselWall& wall, const WallState& w, const 
   t.along = along;
   t.start = (X_WN * needle_.point(L) - t.anchor).dot(along);
   if (s.point.kind == PointContact::Kind::outside) {
-    t.stiffness = material_.point_stiffness * Mat3::Identity();
+    t.stiffness = under(wall, s.point.at) * Mat3::Identity();
   } else if (s.point.kind == PointContact::Kind::boundary) {
-    if (t.start > 0.0) t.stiffness = material_.point_stiffness * along * along.transpose();  // it only stops the point, it does not hold it back
+    if (t.start > 0.0) t.stiffness = under(wall, s.point.at) * along * along.transpose();  // it only stops the point, it does not hold it back
   } else {
     const PunctureLayer& l = layer(wall.layer_at(s.point.at));
     const NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
@@ -249,14 +249,14 @@ void NeedleTracks::rest_on_surface(VesselWall& wall, const WallState& w, TrackSt
   const bool shallow = angle < material_.least_angle;
   if (shallow || sideways.norm() > kPointGrip * normal) {  // skids
     const double give = shallow ? sideways.norm() : sideways.norm() - kPointGrip * normal;
-    const Vec3 to = t.anchor - give / material_.point_stiffness * sideways.normalized();
+    const Vec3 to = t.anchor - give / under(wall, s.point.at) * sideways.normalized();
     const WallCrossing next = wall.nearest(w, to, 2e-4);
     if (next.found && next.surface == here.surface) s.point.at = next.point;
     return;
   }
   if (normal < s.point.threshold) return;
   e.say("puncture", normal);
-  s.dissipated += 0.5 * normal * normal / material_.point_stiffness;
+  s.dissipated += 0.5 * normal * normal / under(wall, s.point.at);
   open_track(wall, w, s, angle);
 }
 
@@ -314,15 +314,15 @@ void NeedleTracks::advance(const VesselWall& wall, const WallState& w, TrackStat
 }
 
 void NeedleTracks::break_through(const VesselWall& wall, const WallState&, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept {
-  const double push = -t.force.dot(along);
-  if (std::min(push / material_.point_stiffness, t.start) < -kBack) {
+  const double push = -t.force.dot(along), stiffness = under(wall, s.point.at);
+  if (std::min(push / stiffness, t.start) < -kBack) {
     s.point.kind = PointContact::Kind::within;
     return;
   }
   const double slope = std::min(1.0, std::abs(along.dot(s.point.normal)));
   s.point.force = push * slope;
   if (s.point.force < s.point.threshold) return;
-  s.dissipated += 0.5 * push * push / material_.point_stiffness;
+  s.dissipated += 0.5 * push * push / stiffness;
   s.point.kind = PointContact::Kind::within;
   e.say(s.point.leaving != 0 ? "needle-out" : "puncture", s.point.force);
   if (s.point.leaving == 0) return;

@@ -29,6 +29,7 @@ struct PunctureLayer {
   double cutting = 1e-3;      // [N], at the point while it advances
   double friction = 5.0;      // [N/m], dry, for each length of needle inside
   double drag = 50.0;         // [N s/m2], each length and speed
+  double stiffness = 0.0;     // [N/m], under a point that rests on it; 0: the material's point_stiffness
 };
 
 struct TrackMaterial {
@@ -84,6 +85,11 @@ class NeedleTracks {
     }
   };
   const PunctureLayer& layer(int k) const noexcept { return material_.layers[std::min(static_cast<std::size_t>(k), material_.layers.size() - 1)]; }
+  /// What a point that rests there feels. [N/m]
+  double under(const VesselWall& wall, const WallPoint& at) const noexcept {
+    const double own = layer(wall.layer_at(at)).stiffness;
+    return own > 0.0 ? own : material_.point_stiffness;
+  }
   RodTether tether_of(const VesselWall& wall, const WallState& w, const TrackKnot& k, double arc, const Vec3& along, const Vec3& x, double share) const noexcept;
   void hold_point(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, std::vector<RodTether>& on_needle) noexcept;
   void take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt) noexcept;

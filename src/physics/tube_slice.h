@@ -4,6 +4,7 @@
 
 #include "physics/vessel_wall_element.h"
 #include "physics/vessel_wall_static.h"
+#include "physics/wall_softening.h"
 
 namespace filum {
 
@@ -24,5 +25,9 @@ struct SliceState {
 
 /// Equilibrium at each pressure [Pa] in turn, each from the one before.
 std::vector<SliceState> inflate(const TubeSlice& slice, const std::vector<double>& pressures);
+
+/// Pressure [Pa] that the slice bears with its inner face at each radius [m] in turn, every element softening by its own past; NaN where no equilibrium
+/// was found.
+std::vector<double> borne(const TubeSlice& slice, const WallSoftening& softening, const std::vector<double>& inner);
 
 }  // namespace filum

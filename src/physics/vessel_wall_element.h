@@ -43,6 +43,8 @@ class WallElements {
   using Stiffness = Eigen::Matrix<double, 24, 24>;
   /// d(-force)/dx [N/m] of one element, corner by corner. `taut`: fibres count as in tension where they are not.
   Stiffness stiffness(int element, const Points& x, bool taut = false) const noexcept;
+  /// Energy of one element, sound, by scalar code. [J]
+  double energy(int element, const Points& x) const noexcept;
   /// Stress-free volume. [m3]
   double volume(int element) const noexcept { return volume_[static_cast<std::size_t>(element)]; }
 

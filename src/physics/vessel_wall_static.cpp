@@ -17,8 +17,7 @@ struct Balance {
   double energy = 0.0;
   Balance(const VesselMesh& mesh, const WallElements& elements, const WallLoadCase& load, const Points& x)
       : force(Points::Zero(3, x.cols())), push(Points::Zero(3, x.cols())) {
-    const std::vector<double> sound(static_cast<std::size_t>(mesh.n_elements()), 1.0);
-    energy = elements.add_forces(x, sound, force);
+    energy = elements.add_forces(x, load.soundness.empty() ? std::vector<double>(static_cast<std::size_t>(mesh.n_elements()), 1.0) : load.soundness, force);
     if (!load.pressure.empty()) add_pressure_forces(mesh, load.pressure, x, push);
     force += push;
     if (load.force.cols() > 0) {
@@ -39,7 +38,8 @@ Sparse assemble(const VesselMesh& mesh, const WallElements& elements, const Wall
   std::vector<Eigen::Triplet<double>> list;
   list.reserve(static_cast<std::size_t>(mesh.n_elements()) * 576);
   for (int e = 0; e < mesh.n_elements(); ++e) {
-    const auto K = elements.stiffness(e, x);
+    WallElements::Stiffness K = elements.stiffness(e, x);
+    if (!load.soundness.empty()) K *= load.soundness[static_cast<std::size_t>(e)];
     const auto& nodes = mesh.elements[static_cast<std::size_t>(e)];
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b)

@@ -13,6 +13,7 @@ struct WallLoadCase {
   std::vector<char> fixed;        // of each of the 3 n numbers
   std::vector<double> pressure;   // [Pa], of each part; empty: none
   Points force;                   // [N], dead; empty: none
+  std::vector<double> soundness;  // of each element, share of its stiffness that is left; empty: all
 };
 
 struct StaticSummary {

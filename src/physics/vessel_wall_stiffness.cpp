@@ -97,6 +97,18 @@ double WallElements::mean_pressure(std::size_t e, const Corners& corners) const 
   return rows_[static_cast<std::size_t>(row_of_[e])].lambda_mean * (filled / volume_[e] - 1.0);
 }
 
+double WallElements::energy(int element, const Points& x) const noexcept {
+  const auto e = static_cast<std::size_t>(element);
+  double sum = 0.0, filled = 0.0;
+  each_point(e, gather(nodes_of_[e], x), [&](const LawConstants& law, const CovariantForms&, const Six& C, const Scalars& p, double J, const Six& dJ) {
+    Six T;
+    sum += p.weight * law_energy(law, p.geometry, C.data(), J, dJ.data(), T.data());
+    filled += p.weight * J;
+  });
+  const double change = filled / volume_[e] - 1.0;
+  return sum + 0.5 * rows_[static_cast<std::size_t>(row_of_[e])].lambda_mean * volume_[e] * change * change;
+}
+
 WallElements::Stiffness WallElements::stiffness(int element, const Points& x, bool taut) const noexcept {
   const auto e = static_cast<std::size_t>(element);
   const Corners corners = gather(nodes_of_[e], x);

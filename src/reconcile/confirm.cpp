@@ -72,9 +72,7 @@ FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& r
 bool confirm(const Search& search, const Fit& winner, const Options& options, Result& result) {
   const Fitter& fitter = search.fitter();
   const auto solver = make_full_solver(fitter.model());
-  // the instants at which layers give way are read off each record: no solver can be asked for them
-  const bool layers = std::any_of(winner.forms.begin(), winner.forms.end(), [](const Form* f) { return f->effect == Effect::layer_rupture; });
-  if (solver == nullptr || layers || !solver->needed(winner.forms)) return true;
+  if (solver == nullptr || !solver->needed(winner.forms)) return true;
   if (options.progress) options.progress("re-simulation", 0.9);
   stop_if_cancelled(options);
   const FullFit base = refit_fully(fitter, *solver, search.base(), false);

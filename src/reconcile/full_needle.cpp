@@ -1,8 +1,8 @@
 // needle-insertion by the trainer's needle and track (physics/track_rig): a needle in a vice is driven into a block with the tissue's stiffness under its
 // point, layer boundaries where the further ruptures are, and dry friction for each length inside, along each record's own path. Lengths and forces are
 // scaled to the block (depth 0.6 mm, puncture 5 mN), which a quasi-static law does not see. What the track adds to the reduced model is the compliance of
-// vice and block, the stick range of its friction at reversals, and the way from one layer to the next; drag proportional to the speed alone, friction
-// from the surface on and a load train are laws of the reduced model, added as there.
+// vice and block, the stick range of its friction at reversals, and the way from one layer to the next. Where a layer lies in a specimen is taken from its
+// record (it gave way there under its force); when it gives way is for the simulation to find. Drag proportional to the speed alone is the reduced model's.
 
 #include <algorithm>
 #include <cmath>
@@ -36,17 +36,20 @@ std::vector<double> needle_forces(const NeedlePath& p, double move) {
   const double length = p.deepest / kDepth, force = p.puncture / kForce;
   RigOptions o;
   o.thickness = kBlock;
-  TrackMaterial m = plain_track(kForce, 0.0, p.friction * length / force);
+  const double rub = p.friction * length / force;
+  TrackMaterial m = plain_track(kForce, 0.0, p.friction_from > 0.0 ? 0.0 : rub);
   m.point_stiffness = p.stiffness * length / force;
+  m.layers.front().stiffness = p.touch * length / force;
+  std::vector<NeedlePath::Rupture> faces = p.ruptures;  // from the surface down; the block counts from its inner face
+  if (p.friction_from > 0.0) faces.push_back({p.friction_from + 1.5 * move * length, 0.0, 0.0});  // gives way at once; below where the point comes to when it pierces
+  std::sort(faces.begin(), faces.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
   std::vector<WallLayer> layers;
   double top = kBlock;
-  for (const NeedlePath::Rupture& r : p.ruptures) {  // from the surface down; the block counts from its inner face
+  for (const NeedlePath::Rupture& r : faces) {
     const double here = kBlock - r.depth / length;
     layers.insert(layers.begin(), {"layer", std::max(top - here, 1e-6), WallLaw::hooke(o.young, 0.3)});
     top = here;
-    PunctureLayer below = m.layers.front();
-    below.puncture = r.force / force;
-    m.layers.insert(m.layers.begin(), below);
+    m.layers.insert(m.layers.begin(), {r.force / force, 0.0, r.depth < p.friction_from ? 0.0 : rub, 0.0, r.stiffness * length / force});
   }
   layers.insert(layers.begin(), {"deepest", top, WallLaw::hooke(o.young, 0.3)});
   o.layers = layers;
@@ -55,7 +58,7 @@ std::vector<double> needle_forces(const NeedlePath& p, double move) {
   std::vector<double> out;
   double at = -kTouch, now = 0.0;
   for (const double x : p.depth) {
-    drive(rig, at, std::max(x / length, -kTouch), move, p.friction * length / force, now);
+    drive(rig, at, std::max(x / length, -kTouch), move, x > p.friction_from ? rub : 0.0, now);
     out.push_back(now * force);
   }
   return out;
@@ -74,10 +77,10 @@ class NeedleSolver final : public FullSolver {
     if (drops.empty() || t.at("depth")[drops[0]] <= 0.0) return true;  // never pierced: a spring, which the reduced model is
     Setting own;  // what the track knows of: stiffness, layers, friction of the length inside
     own.base = s.base, own.scale = s.scale;
-    static constexpr int kRamp = 0, kLength = 0;
-    take(s, own, Effect::rig_compliance, s.form(Effect::rig_compliance));
-    take(s, own, Effect::layer_rupture, kRamp);
-    take(s, own, Effect::shaft_friction, kLength);
+    for (const Effect e : {Effect::rig_compliance, Effect::layer_rupture, Effect::shaft_friction}) {
+      own.p[static_cast<std::size_t>(index_of(e))] = s.on(e);
+      own.kind[static_cast<std::size_t>(index_of(e))] = s.form(e);
+    }
     Eigen::MatrixXd reduced;
     model_.rig(t, own, reduced);
     const NeedlePath path = path_of(t, own, drops);
@@ -101,10 +104,6 @@ class NeedleSolver final : public FullSolver {
 
  private:
   static Eigen::Index stride(const Trial& t) { return std::max<Eigen::Index>(1, t.samples() / kSamples); }
-  static void take(const Setting& from, Setting& to, Effect e, int form) {
-    to.p[static_cast<std::size_t>(index_of(e))] = from.on(e);
-    to.kind[static_cast<std::size_t>(index_of(e))] = form;
-  }
 
   static NeedlePath path_of(const Trial& t, const Setting& s, const std::vector<int>& drops) {
     NeedlePath p;
@@ -114,11 +113,19 @@ class NeedleSolver final : public FullSolver {
     p.stiffness = s.base[0] * s.scale;
     if (const double* c = s.on(Effect::rig_compliance)) p.stiffness /= 1.0 + p.stiffness * c[0];
     p.puncture = p.stiffness * x[drops[0]];
-    if (const double* f = s.on(Effect::shaft_friction)) p.friction = f[0];
+    if (const double* f = s.on(Effect::shaft_friction)) {
+      const int form = s.form(Effect::shaft_friction);
+      p.friction = f[0];
+      if (form == 1) p.friction_from = x[drops[0]];
+      if (form == 2) p.touch = p.stiffness + p.friction, p.puncture = p.touch * x[drops[0]];
+    }
     const double* layer = s.on(Effect::layer_rupture);
+    double before = x[drops[0]];
     for (std::size_t j = 1; layer != nullptr && j < drops.size(); ++j) {
-      const double force = layer[j - 1] * s.scale, depth = x[drops[j]] - force / p.stiffness;
-      if (depth > (p.ruptures.empty() ? x[drops[0]] : p.ruptures.back().depth)) p.ruptures.push_back({depth, force});
+      const double force = layer[j - 1] * s.scale, at = x[drops[j]];
+      const bool own = s.form(Effect::layer_rupture) == 0 && force / p.stiffness < at - before;  // else it begins where the one before ended
+      if (at > before) p.ruptures.push_back({own ? at - force / p.stiffness : before, force, own ? 0.0 : force / (at - before)});
+      before = at;
     }
     return p;
   }
@@ -127,9 +134,10 @@ class NeedleSolver final : public FullSolver {
   const std::vector<double>& forces(const NeedlePath& p, bool fine) const {
     // what counts are ratios: a record that is stiffer throughout runs the same way, and a thousandth is told apart from nothing
     const auto rounded = [](double v) { return std::round(1e3 * v) / 1e3; };
-    std::vector<double> key = {fine ? 1.0 : 0.0, rounded(p.puncture / (p.stiffness * p.deepest)), rounded(p.friction / p.stiffness), static_cast<double>(p.depth.size()),
+    std::vector<double> key = {fine ? 1.0 : 0.0, rounded(p.puncture / (p.stiffness * p.deepest)), rounded(p.friction / p.stiffness),
+                               rounded(p.touch / p.stiffness), rounded(p.friction_from / p.deepest), static_cast<double>(p.depth.size()),
                                rounded(std::accumulate(p.depth.begin(), p.depth.end(), 0.0) / p.deepest), p.depth[p.depth.size() / 3] / p.deepest};
-    for (const auto& r : p.ruptures) key.insert(key.end(), {rounded(r.depth / p.deepest), rounded(r.force / p.puncture)});
+    for (const auto& r : p.ruptures) key.insert(key.end(), {rounded(r.depth / p.deepest), rounded(r.force / p.puncture), rounded(r.stiffness / p.stiffness)});
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
     std::vector<double> f = needle_forces(p, fine ? 0.5 * kMove : kMove);

@@ -10,6 +10,7 @@
 #include "base/tet_mesh.h"
 #include "physics/hyperelastic.h"
 #include "physics/tissue_law.h"
+#include "physics/wall_softening.h"
 #include "reconcile/hereditary.h"
 #include "reconcile/model.h"
 
@@ -60,9 +61,14 @@ struct TubeWall {
 };
 /// Lame's motion of the outer face over the finite elements', incompressible, at vanishing pressure; `around`: elements of a turn. NaN if not found.
 double tube_linear_factor(const TubeWall& wall, int around);
-/// The pressure of a wall of this law and opening angle [rad] beyond that of rubber with its mu, less `reduced` [Pa] (C [m2]), for motions up to `most` [m2].
-/// linear is NaN where an equilibrium was not found.
-WallTable tube_table(const TubeWall& wall, const WallLaw& law, double opening, double most, const std::function<double(double)>& reduced, int around);
+/// The pressure of a wall of this law and opening angle [rad] beyond that of rubber with its mu, less `reduced` [Pa] (C [m2], axial stretch), for motions
+/// up to `most` [m2] at one axial stretch or three. linear is NaN where an equilibrium was not found.
+WallTable tube_table(const TubeWall& wall, const WallLaw& law, double opening, const std::vector<double>& stretches, double most,
+                     const std::function<double(double, double)>& reduced, int around);
+
+/// A linear incompressible wall whose elements each soften by their own past, less the reduced law of the whole wall (W0 over Young's modulus, energy
+/// (C/(a b))^2/2), for motions up to `most` [m2]; empty where an equilibrium was not found.
+WallTable::Softened tube_softening(const TubeWall& wall, WallSoftening law, double most, int around);
 
 /// T2/T1 of a limp thread drawn over a round bar that it touches for `wrap` [rad]; NaN where the rod failed.
 double drawn_ratio(double mu, double wrap, int edges_a_radian);
@@ -71,12 +77,15 @@ double drawn_ratio(double mu, double wrap, int edges_a_radian);
 struct NeedlePath {
   struct Rupture {
     double depth = 0.0, force = 0.0;  // [m] of the layer's face, [N] at which it gives way
+    double stiffness = 0.0;           // [N/m], of this layer under the point; 0: the tissue's
   };
   std::vector<double> depth;          // [m], of each sample, 0 at the surface
   double deepest = 1e-3;              // [m]
   double stiffness = 100.0;           // [N/m], of the tissue under the point
   double puncture = 5e-3;             // [N]
-  double friction = 0.0;              // [N/m], for each length inside
+  double touch = 0.0;                 // [N/m], before the puncture; 0: stiffness
+  double friction = 0.0;              // [N/m], for each length inside,
+  double friction_from = 0.0;         // [m], deeper than this
   std::vector<Rupture> ruptures;      // further layers, from the surface down
 };
 /// Force [N] along the needle at each sample, steps of at most `move` [m] of a path scaled to 0.6 mm.

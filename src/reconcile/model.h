@@ -29,11 +29,23 @@ struct Form {
   int instants = 0;                                // places read off the records, chosen among all samples
 };
 
-/// A tube's pressure by finite elements against the reduced model's, at motions r'^2 = R^2 + 2 C.
+/// A tube's pressure by finite elements against the reduced model's, at motions r'^2 = R^2/stretch + 2 C.
 struct WallTable {
-  double linear = 1.0;               // factor of the linear part
-  std::vector<double> C, beyond;     // [m2] ascending from 0, [Pa] to be added
-  double at(double c) const;         // [Pa], between them, and beyond them in proportion
+  double linear = 1.0;                 // factor of the linear part
+  struct Slice {
+    double stretch = 1.0;              // along the axis
+    std::vector<double> C, beyond;     // [m2] ascending, [Pa] to be added
+    double at(double c) const;         // [Pa], straight between them, beyond the last in proportion
+  };
+  std::vector<Slice> slices;           // ascending in stretch; a parabola through three
+  double at(double c, double stretch) const;
+  /// Softening of the first cycles: the share of the stress that is left, less the reduced model's.
+  struct Softened {
+    std::vector<double> top, share;    // [m2] largest motions so far, ascending from 0; motion over the largest, ascending to 1
+    std::vector<double> more;          // of each top, of each share
+    double at(double c, double top) const;
+  };
+  Softened softened;
 };
 
 struct Kernel;
@@ -113,8 +125,8 @@ class RigModel {
     double mu = 0.0, wrap = 0.0, hold = 0.0;  // [-], [rad], [N]
   };
   virtual Slide slide(const Trial&, const Setting&, Eigen::Index /*sample*/) const { return {}; }
-  /// Pressure [Pa] that the effects of a tube's wall ask for beyond the linear law at motion C [m2].
-  virtual double wall_pressure(const Trial&, const Setting&, double /*C*/) const { return 0.0; }
+  /// Pressure [Pa] that the effects of a tube's wall ask for beyond the linear law at motion C [m2] and a stretch along its axis.
+  virtual double wall_pressure(const Trial&, const Setting&, double /*C*/, double /*stretch*/) const { return 0.0; }
 
   /// rig(), then the sensor.
   void simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const;

@@ -73,13 +73,36 @@ void apply_saturation(const Setting& s, Eigen::MatrixXd& out) {
 
 }  // namespace
 
-double WallTable::at(double c) const {
+double WallTable::Slice::at(double c) const {
   if (C.size() < 2) return 0.0;
-  if (c <= C[1]) return beyond[1] * c / C[1];
   if (c >= C.back()) return beyond.back() * c / C.back();
-  const auto i = static_cast<std::size_t>(std::upper_bound(C.begin(), C.end(), c) - C.begin());
+  const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, std::upper_bound(C.begin(), C.end(), c) - C.begin()));
   const double w = (c - C[i - 1]) / (C[i] - C[i - 1]);
   return (1.0 - w) * beyond[i - 1] + w * beyond[i];
+}
+
+double WallTable::at(double c, double stretch) const {
+  if (slices.size() < 3) return slices.empty() ? 0.0 : slices[0].at(c);
+  double sum = 0.0;
+  for (const Slice& one : slices) {
+    double weight = 1.0;
+    for (const Slice& other : slices)
+      if (&other != &one) weight *= (stretch - other.stretch) / (one.stretch - other.stretch);
+    sum += weight * one.at(c);
+  }
+  return sum;
+}
+
+double WallTable::Softened::at(double c, double most) const {
+  if (top.size() < 2 || !(most > 0.0)) return 0.0;
+  const auto place = [](const std::vector<double>& x, double v) {
+    const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(std::upper_bound(x.begin(), x.end(), v) - x.begin(), 1, static_cast<std::ptrdiff_t>(x.size()) - 1));
+    return std::pair(i, std::clamp((v - x[i - 1]) / (x[i] - x[i - 1]), 0.0, 1.0));
+  };
+  const auto [k, u] = place(top, most);
+  const auto [m, v] = place(share, std::abs(c) / most);
+  const auto line = [&](std::size_t row) { return (1.0 - v) * more[row * share.size() + m - 1] + v * more[row * share.size() + m]; };
+  return (1.0 - u) * line(k - 1) + u * line(k);
 }
 
 void RigModel::simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {

@@ -49,9 +49,7 @@ class Vessel final : public RigModel {
   std::vector<double> guess() const override;
   std::vector<Form> forms() const override;
   void rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const override;
-  double wall_pressure(const Trial& t, const Setting& s, double C) const override {
-    return extra(C, t.has("axial_stretch") ? t.at("axial_stretch").mean() : 1.0, wall_of(t, s), s);
-  }
+  double wall_pressure(const Trial& t, const Setting& s, double C, double stretch) const override { return extra(C, stretch, wall_of(t, s), s); }
 
  private:
   double extra(double C, double lz, const Wall& w, const Setting& s) const;
@@ -124,7 +122,7 @@ double Vessel::extra(double C, double lz, const Wall& w, const Setting& s) const
   }
   if (const double* p = s.on(Effect::perivascular_tethering)) P += p[0] * C / w.b;
   if (const double* p = s.on(Effect::residual_stress)) P += sector(C, p[0], s.mesh, w);
-  return P + (s.wall != nullptr ? s.wall->at(C) : 0.0);
+  return P + (s.wall != nullptr ? s.wall->at(C, lz) : 0.0);
 }
 
 double Vessel::Table::operator()(double C) const {
@@ -178,14 +176,16 @@ void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
   }
   const double* soft = s.on(Effect::first_cycle_softening);
   const bool plain = soft == nullptr && s.on(Effect::fibre_stiffening) == nullptr && s.on(Effect::strain_stiffening) == nullptr &&
-                     s.on(Effect::smooth_muscle_tone) == nullptr && s.on(Effect::perivascular_tethering) == nullptr && s.on(Effect::residual_stress) == nullptr && (s.wall == nullptr || s.wall->C.empty());
+                     s.on(Effect::smooth_muscle_tone) == nullptr && s.on(Effect::perivascular_tethering) == nullptr && s.on(Effect::residual_stress) == nullptr && (s.wall == nullptr || s.wall->slices.empty());
   out.resize(t.samples(), static_cast<Eigen::Index>(data().outputs.size()));
   double C = 0.0, top = 0.0;
   // an elastic term bears pressure at every C > 0, so the linear wall alone bounds C from above (softening by its factor)
   const bool steady = !t.has("axial_stretch") || t.at("axial_stretch").maxCoeff() == t.at("axial_stretch").minCoeff();
   const double reach = std::max(P.maxCoeff(), -P.minCoeff()) / (2.0 * w.mu * w.lame) / (soft != nullptr ? 1.0 - soft[0] : 1.0);
   Table table;
-  if (!plain && steady) table = tabulate(t.has("axial_stretch") ? t.at("axial_stretch")[0] : 1.0, std::max(std::min(0.0, 1.3 * P.minCoeff() / (2.0 * w.mu * w.lame)), -0.45 * w.a * w.a), 1.3 * reach, w, s);
+  const double held = t.has("axial_stretch") ? t.at("axial_stretch")[0] : 1.0;
+  const double least = held > 1.001 ? -0.45 * w.a * w.a : std::max(std::min(0.0, 1.3 * P.minCoeff() / (2.0 * w.mu * w.lame)), -0.45 * w.a * w.a);  // fibres that the axis stretches pull in
+  if (!plain && steady) table = tabulate(held, least, 1.3 * reach, w, s);
   for (Eigen::Index n = 0; n < P.size(); ++n) {
     const double lz = t.has("axial_stretch") ? t.at("axial_stretch")[n] : 1.0;
     if (plain) {
@@ -196,6 +196,7 @@ void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
         const double e = C / (w.a * w.b), energy = 0.5 * e * e;
         top = std::max(top, energy);
         softened = 1.0 - soft[0] * softening_share((top - energy) / soft[1], s.form(Effect::first_cycle_softening));
+        if (s.wall != nullptr) softened += s.wall->softened.at(C, w.a * w.b * std::sqrt(2.0 * top));
       }
       C = steady ? solve(P[n], C, softened, w, table) : solve(P[n], C, softened, w, [&](double c) { return extra(c, lz, w, s); });
     }

@@ -7,6 +7,15 @@
 namespace filum {
 namespace {
 
+/// Active stress of the muscle around the vessel.
+MuscleTone read_tone(const YamlNode& node) {
+  MuscleTone tone;
+  tone.shape = node.choice("shape", {"parabola", "bell"}) == "bell" ? MuscleTone::Shape::bell : MuscleTone::Shape::parabola;
+  tone.stress = measured(node, "active_stress", "kPa", Range::not_negative());
+  tone.best = measured(node, "stretch_of_most_tone", "-", Range::between(1.02, 1.8));
+  return tone;
+}
+
 WallLayer read_layer(const YamlNode& node) {
   WallLayer l;
   l.name = node.text("name");
@@ -22,6 +31,7 @@ WallLayer read_layer(const YamlNode& node) {
   l.law.lambda = bulk - 2.0 / 3.0 * l.law.mu;
   if (l.law.lambda < l.law.mu) node.refuse("bulk", "more than 5/3 of the shear modulus");
   l.law.kind = WallLaw::Kind::neo_hookean;
+  if (node.has("tone")) l.law.tone = read_tone(node.map("tone"));
   if (law == "neo-hookean") return l;
   l.law.kind = WallLaw::Kind::fibres;
   l.law.k1 = measured(node, "k1", "kPa", Range::not_negative());

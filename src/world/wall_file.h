@@ -1,6 +1,7 @@
 #pragma once
-// Vessel presets, models/vessel/*.yaml of format filum-vessel/1: every number with its unit, uncertainty and source. Unknown keys, missing
-// sources and values out of range are refused with file, field and value. Test: wall_file_test.
+// Vessel presets, models/vessel/*.yaml of format filum-vessel/1: every number with its unit, uncertainty and source. A layer that is not linear may have
+// `tone`: { shape: parabola or bell, active_stress, stretch_of_most_tone }. Unknown keys, missing sources and values out of range are refused with file,
+// field and value. Test: wall_file_test.
 
 #include <string>
 #include <vector>

@@ -64,9 +64,16 @@ TEST(Hyperelastic, DerivativesOfEveryLaw) {
   check_derivatives(rubber);
   check_derivatives(fibres());
   WallLaw stiffening = fibres();
-  stiffening.kind = WallLaw::Kind::yeoh;
+  stiffening.kind = WallLaw::Kind::neo_hookean;
   stiffening.c20 = 5e3;
   check_derivatives(stiffening);
+  stiffening.growth = 1.5;
+  check_derivatives(stiffening);
+  WallLaw active = fibres();
+  for (const auto shape : {MuscleTone::Shape::parabola, MuscleTone::Shape::bell}) {
+    active.tone = {shape, 20e3, 1.25};
+    check_derivatives(active);
+  }
 }
 
 TEST(Hyperelastic, VolumeRatioAndItsDerivatives) {
@@ -117,7 +124,7 @@ TEST(Hyperelastic, ExponentialEndsSmoothly) {
 /// Simple shear keeps the volume, I1 - 3 = g^2: stress mu g + 4 c20 g^3.
 TEST(Hyperelastic, YeohInSimpleShear) {
   WallLaw law = fibres();
-  law.kind = WallLaw::Kind::yeoh;
+  law.kind = WallLaw::Kind::neo_hookean;
   law.c20 = 5e3;
   const LawGeometry<double> g{{1, 1, 1, 0, 0, 0}, 1.0, {}};
   for (const double shear : {0.1, 0.5, 1.2}) {
@@ -126,6 +133,45 @@ TEST(Hyperelastic, YeohInSimpleShear) {
     const double J = volume_ratio(g, C.data(), dJ.data());
     law_energy(LawConstants(law), g, C.data(), J, dJ.data(), T.data());
     EXPECT_NEAR(T[3] + 2.0 * shear * T[1], law.mu * shear + 4.0 * law.c20 * std::pow(shear, 3), 1e-9 * law.mu);  // dPsi/dg
+  }
+}
+
+/// Simple shear: dPsi/dg = mu g exp(b g^2), beyond the largest exponent a straight line of dPsi/dI1.
+TEST(Hyperelastic, ExponentialStiffeningInSimpleShear) {
+  WallLaw law = fibres();
+  law.kind = WallLaw::Kind::neo_hookean;
+  law.growth = 4.0;
+  const LawGeometry<double> g{{1, 1, 1, 0, 0, 0}, 1.0, {}};
+  const auto stress = [&](double shear) {
+    const Six C = (Six() << 1.0, 1.0 + shear * shear, 1.0, shear, 0.0, 0.0).finished();
+    Six dJ, T;
+    const double J = volume_ratio(g, C.data(), dJ.data());
+    law_energy(LawConstants(law), g, C.data(), J, dJ.data(), T.data());
+    return T[3] + 2.0 * shear * T[1];
+  };
+  for (const double shear : {0.1, 0.5, 1.2}) EXPECT_NEAR(stress(shear) / (law.mu * shear * std::exp(4.0 * shear * shear)), 1.0, 1e-12);
+  const double end = std::sqrt(kLargestExponent / 4.0), top = std::exp(kLargestExponent), beyond = 1.2 * 1.2 * end * end - end * end;
+  EXPECT_NEAR(stress(1.2 * end) / (law.mu * 1.2 * end * top * (1.0 + 4.0 * beyond)), 1.0, 1e-9);
+}
+
+/// Stretched by l along the first direction, tone adds l dPsi/dl = S f(l) to the stress there and nothing elsewhere.
+TEST(Hyperelastic, ToneIsItsStressAroundTheVessel) {
+  WallLaw passive = fibres(), active = fibres();
+  const LawGeometry<double> g{{1, 1, 1, 0, 0, 0}, 1.0, {{0.6, 0.4, 0.1}, {0.6, 0.4, -0.1}}};
+  for (const auto shape : {MuscleTone::Shape::parabola, MuscleTone::Shape::bell}) {
+    active.tone = {shape, 20e3, 1.25};
+    for (const double l : {0.9, 1.0, 1.1, 1.25, 1.4, 1.6}) {
+      const Six C = (Six() << l * l, 1.1, 1.0 / (1.1 * l * l), 0.0, 0.0, 0.0).finished();
+      Six dJ, without, with;
+      const double J = volume_ratio(g, C.data(), dJ.data());
+      law_energy(LawConstants(passive), g, C.data(), J, dJ.data(), without.data());
+      law_energy(LawConstants(active), g, C.data(), J, dJ.data(), with.data());
+      EXPECT_NEAR(2.0 * l * l * (with[0] - without[0]), 20e3 * active.tone.share(l), 0.5) << l;
+      EXPECT_EQ((with - without).tail<5>().norm(), 0.0);
+    }
+    EXPECT_NEAR(active.tone.share(1.25), shape == MuscleTone::Shape::parabola ? 1.0 : 1.0 - std::exp(-std::pow(0.25 / 0.15, 2)), 1e-12);
+    EXPECT_EQ(active.tone.share(1.0), 0.0);
+    EXPECT_EQ(active.tone.share(1.51), 0.0);
   }
 }
 

@@ -44,8 +44,7 @@ TEST(WallFile, EveryPresetLoadsAndMeshes) {
 }
 
 /// Outer diameter [mm] at the preset's pressure and stretch in the body.
-double outer_diameter(const std::string& name) {
-  const VesselPreset p = load_vessel(kFolder + name + ".yaml");
+double outer_diameter(const VesselPreset& p) {
   TubeSlice s;
   s.shape = p.shape;
   s.shape.length = 0.1e-3;
@@ -54,9 +53,10 @@ double outer_diameter(const std::string& name) {
   s.around = 24;
   s.through = 4;
   const SliceState state = inflate(s, {0.0, 0.3 * p.pressure, p.pressure}).back();
-  EXPECT_TRUE(state.converged) << name;
+  EXPECT_TRUE(state.converged) << p.title;
   return 2e3 * state.outer;
 }
+double outer_diameter(const std::string& name) { return outer_diameter(load_vessel(kFolder + name + ".yaml")); }
 
 TEST(WallFile, DiametersAtPressureAreThoseOfTheLiterature) {
   const double artery = outer_diameter("rat-femoral-artery");
@@ -68,6 +68,22 @@ TEST(WallFile, DiametersAtPressureAreThoseOfTheLiterature) {
   const double human = outer_diameter("human-digital-artery");
   EXPECT_GT(human, 0.8);
   EXPECT_LT(human, 1.2);
+}
+
+TEST(WallFile, ToneNarrowsTheVessel) {
+  const std::string relaxed = text_of("rat-femoral-artery"), media = "  - name: media\n    law: fibres\n";
+  const std::string tone = "    tone:\n      shape: parabola\n      active_stress: { value: \"60 kPa\", uncertainty: \"30 kPa\", source: a test }\n"
+                           "      stretch_of_most_tone: { value: \"1.4\", uncertainty: \"0.1\", source: a test }\n";
+  const std::string text = replaced(relaxed, media, media + tone);
+  const VesselPreset active = load_text(text);
+  EXPECT_DOUBLE_EQ(active.layers[1].law.tone.stress, 60e3);
+  EXPECT_EQ(active.layers[0].law.tone.stress, 0.0);
+  const double narrow = outer_diameter(active), wide = outer_diameter("rat-femoral-artery");
+  std::printf("outer diameter at pressure: %.3f mm, with tone %.3f mm\n", wide, narrow);
+  EXPECT_LT(narrow, 0.97 * wide);
+  EXPECT_THROW(load_text(replaced(text, "\"60 kPa\"", "\"-60 kPa\"")), InputError);
+  EXPECT_THROW(load_text(replaced(text, "stretch_of_most_tone", "stretch_of_all_tone")), InputError);
+  EXPECT_THROW(load_text(replaced(text, "shape: parabola", "shape: ellipse")), InputError);
 }
 
 TEST(WallFile, RefusesWhatIsWrong) {
