@@ -1,6 +1,6 @@
 // vessel-inflation by the trainer's wall elements (physics/tube_slice): Hooke's law at vanishing strain for the linear part; for fibres, stiffening, tone
 // and the opening angle, alone or together, the pressure of a rubber wall that has them less that of one that has not, at equal motion and axial stretch,
-// as the reduced model adds them; softening element by element. What acts equally on the whole wall (relaxation) or from outside (tethering: a pressure on an incompressible wall
+// as the reduced model adds them. Softening element by element (tube_softening) is not asked for in acceptance yet: its refit swings. What acts equally on the whole wall (relaxation) or from outside (tethering: a pressure on an incompressible wall
 // moves it alike on either side) changes nothing in a slice but its load and stays the reduced model's.
 
 #include <algorithm>
@@ -222,7 +222,6 @@ class TubeSolver final : public FullSolver {
     if (const double* p = take(Effect::smooth_muscle_tone, 2))
       law.tone = {s.form(Effect::smooth_muscle_tone) == 0 ? MuscleTone::Shape::parabola : MuscleTone::Shape::bell, p[0], p[1]};
     if (const double* p = take(Effect::residual_stress, 1)) opening = p[0];
-    if (const double* p = s.on(Effect::first_cycle_softening)) key.insert(key.end(), {-1.0 - s.form(Effect::first_cycle_softening), p[0], p[1]});
     return law;
   }
 
@@ -262,12 +261,7 @@ class TubeSolver final : public FullSolver {
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
     const int around = fine ? 32 : 16;
-    WallTable made = tube_table(w, law, opening, stretches(), widest(w), [&](double C, double lz) { return model_.wall_pressure(t, own, C, lz); }, around);
-    if (const double* p = s.on(Effect::first_cycle_softening)) {
-      made.softened = tube_softening(w, {static_cast<WallSoftening::Shape>(s.form(Effect::first_cycle_softening)), p[0], p[1]}, widest(w), around);
-      if (made.softened.top.empty()) made.linear = NAN;
-    }
-    return known_.emplace(std::move(key), std::move(made)).first->second;
+    return known_.emplace(std::move(key), tube_table(w, law, opening, stretches(), widest(w), [&](double C, double lz) { return model_.wall_pressure(t, own, C, lz); }, around)).first->second;
   }
 
   const RigModel& model_;
