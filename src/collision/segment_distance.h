@@ -38,26 +38,47 @@ inline SegmentPair closest_points(const Vec3& p0, const Vec3& p1, const Vec3& q0
   return r;
 }
 
-/// Closest points of a segment p0-p1 and the surface of a tapered bar (axis q0-q1, radius r0 at q0, r1 at q1, longer than it
-/// tapers): minimises distance of the axes minus radius, so that the gap's derivative is along `d` whatever the taper.
+/// Where two segments press on each other. The closest points of nearly parallel segments jump from end to end at the slightest turn, and the
+/// potential of their distance has a kink there; these minimise |d|^2 + spread2 ((s - 1/2)^2 + (t - 1/2)^2), and go over. `distance` is the root of
+/// that: the least distance or up to spread2 / (4 |d|) more. Its gradient is d/distance at (s, t) (envelope theorem), and continuous.
+/// Seen otherwise: closest points of segments that lean towards a fourth and a fifth dimension by the root of spread2 [m2], > 0.
+inline SegmentPair pressed_points(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double spread2) noexcept {
+  const Vec3 u = p1 - p0, v = q1 - q0, between_middles = p0 - q0 + 0.5 * (u - v);
+  const double a = u.squaredNorm() + spread2, e = v.squaredNorm() + spread2;
+  const double b = u.dot(v), c = u.dot(between_middles), f = v.dot(between_middles);
+  const auto within = [](double y) { return std::clamp(y, -0.5, 0.5); };
+  double s = within((b * f - c * e) / (a * e - b * b)), t = (b * s + f) / e;  // from the middles
+  if (std::abs(t) > 0.5) {
+    t = within(t);
+    s = within((b * t - c) / a);
+  }
+  const Vec3 d = between_middles + s * u - t * v;
+  return {s + 0.5, t + 0.5, d, std::sqrt(d.squaredNorm() + spread2 * (s * s + t * t))};
+}
+
+/// Where a segment p0-p1 presses on a tapered bar (axis q0-q1, radius r0 at q0, r1 at q1, longer than it tapers): minimises distance
+/// of the axes minus radius, so that the gap's derivative is along `d` whatever the taper; the segment leans as in pressed_points.
 /// At the optimum dD/dt = r1 - r0; with D(t)^2 = D0^2 + k^2 (t - t0)^2 that puts t off the closest point t0 of the axes by
 /// (r1 - r0) D0 / (k sqrt(k^2 - (r1 - r0)^2)). The gap is convex in (s, t): if its optimum is outside, the least on the
 /// border of the square is the answer.
-inline SegmentPair closest_to_bar(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double r0, double r1) noexcept {
+inline SegmentPair pressed_on_bar(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double r0, double r1,
+                                double spread2) noexcept {
   const double taper = r1 - r0;
-  const Vec3 u = p1 - p0, v = q1 - q0, w = p0 - q0;
+  Eigen::Vector4d u, v, w;
+  u << p1 - p0, std::sqrt(spread2);
+  v << q1 - q0, 0.0;
+  w << p0 - q0, -0.5 * u[3];
   const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v);
-  if (taper == 0.0 || e <= 1.01 * taper * taper) return closest_points(p0, p1, q0, q1);
-  const auto along_bar = [&](const Vec3& from_q0, double k2, const Vec3& across_u) {  // t, unbounded
+  const auto along_bar = [&](const Eigen::Vector4d& from_q0, double k2, const Eigen::Vector4d& across_u) {  // t, unbounded
     const double t0 = across_u.dot(from_q0) / k2;
-    Vec3 d0 = from_q0 - t0 * v;
+    Eigen::Vector4d d0 = from_q0 - t0 * v;
     if (k2 != e) d0 -= u.dot(d0) / a * u;
     return t0 + taper * d0.norm() / std::sqrt(k2 * (k2 - taper * taper));
   };
   const auto along_segment = [&](double t) { return u.dot(t * v - w) / a; };
   const auto pair_at = [&](double s, double t) {
-    const Vec3 d = w + s * u - t * v;
-    return SegmentPair{s, t, d, d.norm()};
+    const Eigen::Vector4d d = w + s * u - t * v;
+    return SegmentPair{s, t, d.head<3>(), d.norm()};
   };
   const double k2 = e - b * b / a;
   if (k2 > 1.01 * taper * taper) {

@@ -214,10 +214,7 @@ void ImplicitRod::find_near(const RodState& s, const RodMemory& memory) noexcept
 
 void ImplicitRod::fit_pattern(int n) noexcept {
   const StageScope stage("elimination order");
-  if (pattern_n_ == n && !contact_.pattern_stale()) {
-    contact_.find_slots(matrix_);
-    return;
-  }
+  if (pattern_n_ == n && contact_.find_slots(matrix_)) return;
   pattern_n_ = n;
   matrix_.begin_pattern(n);
   for (int i = 0; i + 1 < n; ++i) matrix_.connect(i, i + 1);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "base/stage_clock.h"
 #include "collision/segment_distance.h"
@@ -23,8 +24,10 @@ Weights weights(const RodPair& p) noexcept {
   return {{p.i, p.i + 1, p.j, p.j + 1}, {1.0 - p.s, p.s, -(1.0 - p.t), -p.t}};
 }
 
-SegmentPair measure(const Points& x, int i, int j) noexcept {
-  return closest_points(x.col(i), x.col(i + 1), x.col(j), x.col(j + 1));
+SegmentPair closest(const Points& x, int i, int j) noexcept { return closest_points(x.col(i), x.col(i + 1), x.col(j), x.col(j + 1)); }
+
+SegmentPair pressed(const Points& x, int i, int j, double radius) noexcept {
+  return pressed_points(x.col(i), x.col(i + 1), x.col(j), x.col(j + 1), push_spread(2.0 * radius, radius));
 }
 
 /// Bristle of the step so far: start value plus relative displacement, in the tangent plane.
@@ -83,7 +86,6 @@ RodContact::RodContact(int node_capacity, int pair_capacity)
       low_(Eigen::Matrix4Xd::Zero(4, node_capacity / kChunk + 1)), high_(low_) {
   pairs_.reserve(static_cast<std::size_t>(pair_capacity));
   known_.reserve(static_cast<std::size_t>(pair_capacity));
-  pattern_.reserve(static_cast<std::size_t>(pair_capacity));
   arc_.reserve(static_cast<std::size_t>(node_capacity));
   near_chunks_.reserve(static_cast<std::size_t>(low_.cols()));
 }
@@ -122,7 +124,7 @@ void RodContact::find_pairs(const RodState& s, const Points& x, double radius) n
     }
   }
   keep_loads();
-  compare_pattern();
+  pattern_stale_ = true;
 }
 
 /// Pairs of edge i with later ones of a chunk.
@@ -130,7 +132,7 @@ void RodContact::find_partners(const RodState& s, const Points& x, double radius
   for (int j = std::max(i + 2, chunk * kChunk); j < std::min(s.n - 1, (chunk + 1) * kChunk); ++j) {
     if (apart(edge_low_.col(i), edge_high_.col(i), edge_low_.col(j), edge_high_.col(j))) continue;
     if (arc_[j] - arc_[i + 1] < 4.0 * radius || s.alive[j] == 0) continue;
-    const double distance = measure(x, i, j).distance;
+    const double distance = closest(x, i, j).distance;
     if (distance > 2.0 * radius + travel.reach[i] + travel.reach[j]) continue;
     if (pairs_.size() == pairs_.capacity()) {
       overflowed_ = true;
@@ -152,26 +154,10 @@ void RodContact::keep_loads() noexcept {
   }
 }
 
-void RodContact::compare_pattern() noexcept {
-  std::size_t joined = 0;
-  auto q = pattern_.begin();  // both are sorted by (i, j)
-  pattern_stale_ = false;
-  for (const RodPair& p : pairs_) {
-    if (!p.joined) continue;
-    ++joined;
-    const std::pair key(p.i, p.j);
-    while (q != pattern_.end() && *q < key) ++q;
-    pattern_stale_ = pattern_stale_ || q == pattern_.end() || *q != key;
-  }
-  pattern_stale_ = pattern_stale_ || pattern_.size() > 2 * joined + 16;  // what left again costs fill
-}
-
 void RodContact::connect(BlockCholesky& matrix) noexcept {
-  pattern_.clear();
-  pattern_stale_ = false;
+  connected_ = n_joined();
   for (const RodPair& p : pairs_) {
     if (!p.joined) continue;
-    pattern_.emplace_back(p.i, p.j);
     for (int a = 0; a < 2; ++a)
       for (int b = 0; b < 2; ++b) matrix.connect(p.i + a, p.j + b);
   }
@@ -182,9 +168,16 @@ void RodContact::join(RodPair& p, bool touches) noexcept {
   p.joined = pattern_stale_ = true;
 }
 
-void RodContact::find_slots(const BlockCholesky& matrix) noexcept {
-  for (RodPair& p : pairs_)
-    for (int k = 0; k < 4 && p.joined; ++k) p.slots[k] = matrix.find(p.i + k / 2, p.j + k % 2);
+bool RodContact::find_slots(const BlockCholesky& matrix) noexcept {
+  for (RodPair& p : pairs_) {
+    if (!p.joined) continue;
+    for (int k = 0; k < 4; ++k) {
+      p.slots[k] = matrix.find(p.i + k / 2, p.j + k % 2);
+      if (p.slots[k].index < 0) return false;
+    }
+  }
+  pattern_stale_ = false;
+  return connected_ <= 2 * n_joined() + 16;  // what left again costs fill
 }
 
 void RodContact::recall(const std::vector<ContactBristle>& memory) noexcept {
@@ -210,13 +203,14 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
       p.force = p.load = 0.0;
       continue;
     }
-    const SegmentPair c = measure(x, p.i, p.j);
+    const SegmentPair c = pressed(x, p.i, p.j, radius);
     p.s = c.s;
     p.t = c.t;
     p.distance = c.distance;
     p.measured_at = gone(p);
-    p.normal = c.d / c.distance;
-    p.force = -pair_potential(c.distance, radius, m.stiffness).slope;
+    const double length = c.d.norm();
+    p.normal = c.d / length;
+    p.force = -pair_potential(c.distance, radius, m.stiffness).slope * length / c.distance;
     p.load = load == FrictionLoad::anew ? p.force : std::min(p.load, p.force);
     join(p, p.force > 0.0);
   }
@@ -226,7 +220,7 @@ double RodContact::energy(const Points& x, const Points& x_start, double radius,
   double u = 0.0;
   for (const RodPair& p : pairs_) {
     if (at_least(p) - fraction * stride(p) > 2.0 * radius) continue;
-    u += pair_potential(measure(x, p.i, p.j).distance, radius, m.stiffness).energy;
+    u += pair_potential(pressed(x, p.i, p.j, radius).distance, radius, m.stiffness).energy;
     if (p.force > 0.0) u += coulomb(trial_bristle(p, x, x_start), p.normal, p.load, m.friction, m.stick(m.friction, p.load)).energy;
   }
   return u;
@@ -251,22 +245,29 @@ void RodContact::add_stiffness(const Points& x, double radius, const ContactMate
     const double curvature = pair_potential(p.distance, radius, m.stiffness).curvature;
     const Mat3 k = curvature * p.normal * p.normal.transpose() + p.friction.stiffness;
     add_block(p, k, chain, matrix);
-    add_tilt(p, x, chain, matrix);
+    add_turn(p, x, radius, chain, matrix);
   }
 }
 
-void RodContact::add_tilt(const RodPair& p, const Points& x, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
+/// Turning an edge about the point where it touches brings the axes closer by distance (1 - cos), and moves that point; a pushing force opposes it.
+/// That is the positive part of the second derivative of the distance: -phi'/D K A^-1 K^T, with A that of the (s, t) which are free to move
+/// in pressed_points, K how d turns with each edge.
+void RodContact::add_turn(const RodPair& p, const Points& x, double radius, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
+  const bool free_s = p.s > 0.0 && p.s < 1.0, free_t = p.t > 0.0 && p.t < 1.0;
+  if (!free_s && !free_t) return;
   const Vec3 u = x.col(p.i + 1) - x.col(p.i), v = x.col(p.j + 1) - x.col(p.j);
-  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), crossing = 1.0 - uv * uv / (uu * vv);
-  const Mat3 nn = p.normal * p.normal.transpose();
-  auto add = [&](int edge, double squared) {
-    const Mat4 block = pad(tilt_stiffness(p.force, p.distance, squared, crossing) * nn);
-    matrix.add_diagonal(edge, block);
-    matrix.add_diagonal(edge + 1, block);
-    matrix.add(chain.next[edge], -block);
+  const double spread2 = push_spread(2.0 * radius, radius), a = u.squaredNorm() + spread2, e = v.squaredNorm() + spread2;
+  const double b = free_s && free_t ? u.dot(v) : 0.0;
+  const Mat3 scale = p.force * p.distance / (a * e - b * b) * p.normal * p.normal.transpose();
+  const auto turn = [&](int edge, const Mat3& stiffness) {
+    matrix.add_diagonal(edge, pad(stiffness));
+    matrix.add_diagonal(edge + 1, pad(stiffness));
+    matrix.add(chain.next[edge], pad(-stiffness));
   };
-  if (p.s > 0.0 && p.s < 1.0) add(p.i, uu);
-  if (p.t > 0.0 && p.t < 1.0) add(p.j, vv);
+  if (free_s) turn(p.i, e * scale);
+  if (free_t) turn(p.j, a * scale);
+  if (b == 0.0) return;
+  for (int k = 0; k < 4; ++k) matrix.add(p.slots[k], pad((k == 1 || k == 2 ? b : -b) * scale));
 }
 
 void RodContact::add_block(const RodPair& p, const Mat3& k, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
@@ -305,8 +306,12 @@ double RodContact::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, 
 double RodContact::smallest_distance(const Points& x) const noexcept {
   double d = std::numeric_limits<double>::infinity();
   for (const RodPair& p : pairs_)
-    if (at_least(p) < d) d = std::min(d, measure(x, p.i, p.j).distance);
+    if (at_least(p) < d) d = std::min(d, closest(x, p.i, p.j).distance);
   return d;
+}
+
+int RodContact::n_joined() const noexcept {
+  return static_cast<int>(std::count_if(pairs_.begin(), pairs_.end(), [](const RodPair& p) { return p.joined; }));
 }
 
 int RodContact::n_touching(double radius) const noexcept {

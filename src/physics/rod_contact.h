@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "base/block_cholesky.h"
@@ -77,11 +76,13 @@ class RodContact {
   const std::vector<RodPair>& pairs() const noexcept { return pairs_; }
   bool overflowed() const noexcept { return overflowed_; }
 
-  /// True if the pairs to join are not those of the last connect().
+  /// True if pairs have been joined since find_slots().
   bool pattern_stale() const noexcept { return pattern_stale_; }
-  /// Declares the blocks of the joined pairs in the pattern; after analysis, looks the slots up.
+  /// Declares the blocks of the joined pairs in the pattern.
   void connect(BlockCholesky& matrix) noexcept;
-  void find_slots(const BlockCholesky& matrix) noexcept;
+  /// Looks up where the joined pairs' blocks are, be it among those that elimination fills. False if some are not there, or if many more are
+  /// there than are needed: then the pattern should be made anew.
+  bool find_slots(const BlockCholesky& matrix) noexcept;
 
   /// Attaches the bristles remembered from the last step to the present pairs.
   void recall(const std::vector<ContactBristle>& memory) noexcept;
@@ -108,30 +109,27 @@ class RodContact {
   void box_edges(const RodState& s, const Points& x, double radius) noexcept;
   void find_partners(const RodState& s, const Points& x, double radius, int i, int chunk) noexcept;
   void keep_loads() noexcept;
-  void compare_pattern() noexcept;
+  int n_joined() const noexcept;
   double gone(const RodPair& p) const noexcept { return travel.gone(p.i) + travel.gone(p.j); }
   double stride(const RodPair& p) const noexcept { return travel.stride(p.i) + travel.stride(p.j); }
   double at_least(const RodPair& p) const noexcept { return p.distance - (gone(p) - p.measured_at); }  // [m], distance of the axes
   void join(RodPair& p, bool touches) noexcept;
-  void add_tilt(const RodPair& p, const Points& x, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
+  void add_turn(const RodPair& p, const Points& x, double radius, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
   void add_block(const RodPair& p, const Mat3& k, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
 
   std::vector<RodPair> pairs_, known_;
-  std::vector<std::pair<int, int>> pattern_;  // edges of the last connect()
   Eigen::Matrix4Xd edge_low_, edge_high_, low_, high_;  // [m], of all that edges, and chunks of them, can reach; the fourth row is 0
   std::vector<double> arc_;
   std::vector<int> near_chunks_;
+  int connected_ = 0;  // pairs of the last connect()
   bool overflowed_ = false;
   bool pattern_stale_ = false;
 };
 
-/// Stiffness against tilting that a pressed contact has from its geometry: turning an edge about the point where it touches a
-/// body whose axis is `distance` away brings the axes closer by distance (1 - cos), which a force F opposes. It is the part
-/// -phi' B^T A^-1 B of the second derivative of a closest distance (envelope theorem) that is positive; on the normal displacement of the edge's ends,
-/// one against the other. `crossing`: sine squared of the angle between the axes.
-inline double tilt_stiffness(double force, double distance, double edge_squared, double crossing) noexcept {
-  return force * distance / (edge_squared * std::max(crossing, 0.2));
-}
+/// [m2], of pressed_points for a thread of `radius` and a body whose axis is at `touching` from the thread's when they touch: the push goes over
+/// from one end of an edge to the other while the edge turns by a hundredth of a radius, end against end. For that an edge that touches
+/// with its end is felt up to a four hundredth of a radius later.
+inline double push_spread(double touching, double radius) noexcept { return 0.01 * radius * touching; }
 
 /// phi(D), its first and second derivative.
 struct PairPotential {

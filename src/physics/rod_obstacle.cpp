@@ -12,6 +12,9 @@ namespace {
 
 double bar_radius(const Obstacle& o, double t) noexcept { return (1.0 - t) * o.r_a + t * o.r_b; }
 
+/// [m2], of pressed_on_bar: only the edge's point wanders, where two edges share it.
+double spread(const Obstacle& o, double radius) noexcept { return 2.0 * push_spread(radius + std::max(o.r_a, o.r_b), radius); }
+
 /// Distance of the axes that a single move may not undercut: a fresh touch is met at the surface, where the contact force can
 /// answer it, not deep inside.
 double closest_allowed(double touching, double distance, double radius) noexcept {
@@ -141,10 +144,10 @@ void RodObstacles::measure(const Points& x, double radius, ObstacleTouch& touch)
     touch.gap = touch.normal.dot(x.col(touch.edge + (touch.s > 0.5)) - a_W_[k]) - radius;
     return;
   }
-  const SegmentPair c = closest_to_bar(x.col(touch.edge), x.col(touch.edge + 1), a_W_[k], b_W_[k], o.r_a, o.r_b);
+  const SegmentPair c = pressed_on_bar(x.col(touch.edge), x.col(touch.edge + 1), a_W_[k], b_W_[k], o.r_a, o.r_b, spread(o, radius));
   touch.s = c.s;
   touch.t = c.t;
-  touch.normal = c.d / std::max(c.distance, 1e-12);
+  touch.normal = c.d / std::max(c.d.norm(), 1e-12);
   touch.gap = c.distance - radius - bar_radius(o, c.t);
 }
 
@@ -207,9 +210,10 @@ void RodObstacles::add_stiffness(const Points& x, double radius, const ContactMa
     const auto b = static_cast<std::size_t>(t.obstacle);
     if (obstacles[b].kind == Obstacle::Kind::plane || t.s <= 0.0 || t.s >= 1.0) continue;
     const Vec3 u = x.col(t.edge + 1) - x.col(t.edge), v = b_W_[b] - a_W_[b];
-    const double uu = u.squaredNorm(), crossing = u.cross(v).squaredNorm() / (uu * v.squaredNorm());
+    const double slides = t.t > 0.0 && t.t < 1.0 ? u.dot(v) * u.dot(v) / v.squaredNorm() : 0.0;
     const double distance = t.gap + radius + bar_radius(obstacles[b], t.t);
-    const Mat4 block = pad(tilt_stiffness(t.force, distance, uu, crossing) * t.normal * t.normal.transpose());
+    const double turning = t.force * distance / (u.squaredNorm() + spread(obstacles[b], radius) - slides);  // as in RodContact::add_turn
+    const Mat4 block = pad(turning * t.normal * t.normal.transpose());
     matrix.add_diagonal(t.edge, block);
     matrix.add_diagonal(t.edge + 1, block);
     matrix.add(chain.next[t.edge], -block);
