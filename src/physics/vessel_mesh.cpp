@@ -57,6 +57,7 @@ VesselMesh fill(const Grid& g, const std::function<Vec3(int, int, int)>& rest, c
         m.part.push_back(0);
         add_faces(m, g, m.n_elements() - 1, i, j, k);
       }
+  m.sectors.push_back(g.closed ? g.n[0] : 0);
   m.edge_ring.emplace_back();
   for (int i = 0; i < g.rows(); ++i) m.edge_ring.back().push_back(g.node(i, g.n[1], 0));
   return m;
@@ -119,6 +120,7 @@ void append(VesselMesh& mesh, const VesselMesh& more, const Pose& X) {
   for (const int p : more.node_part) mesh.node_part.push_back(p + parts);
   for (const int s : more.slab) mesh.slab.push_back(s + slabs);
   for (const int i : more.held) mesh.held.push_back(i + n);
+  mesh.sectors.insert(mesh.sectors.end(), more.sectors.begin(), more.sectors.end());
   for (WallFace f : more.faces) {
     f.element += e;
     mesh.faces.push_back(f);

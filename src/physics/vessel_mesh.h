@@ -34,6 +34,7 @@ struct VesselMesh {
   std::vector<int> held;                      // nodes that a clamp or frame moves
   std::vector<WallFace> faces;                // the whole surface
   std::vector<std::vector<int>> edge_ring;    // of each part: nodes of the inner rim of its cut edge, in order
+  std::vector<int> sectors;                   // of each part: alike, round closed rings; 0: none such
   int n_nodes() const { return static_cast<int>(nodes.cols()); }
   int n_elements() const { return static_cast<int>(elements.size()); }
 };

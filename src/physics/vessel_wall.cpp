@@ -68,8 +68,10 @@ WallElements::Stiffness positive(const WallElements::Stiffness& K) {
 }
 
 /// Matrix of the first guess: inertia, the elements at rest and a soft bedding; held nodes keep a diagonal of their own and no coupling.
+/// Each node's numbers in its own directions, by which a tube is the same all round.
 /// Without the bedding the softest modes of the straight tube, turned into a bent one, stretch it: directions a thousand times too long.
-std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallElements& elements, const Vector& inertia, const std::vector<char>& held) {
+std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallElements& elements, const Vector& inertia, const std::vector<char>& held,
+                                            const std::vector<Mat3>& own) {
   std::vector<SlabFactor::Block> blocks;
   double diagonal = 0.0;
   for (int e = 0; e < mesh.n_elements(); ++e) {
@@ -79,7 +81,7 @@ std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallEl
       for (int b = 0; b < 8; ++b) {
         const int i = nodes[static_cast<std::size_t>(a)], j = nodes[static_cast<std::size_t>(b)];
         if (i < j || held[static_cast<std::size_t>(i)] || held[static_cast<std::size_t>(j)]) continue;
-        blocks.push_back({i, j, kFirm * K.block<3, 3>(3 * a, 3 * b)});
+        blocks.push_back({i, j, kFirm * own[static_cast<std::size_t>(i)].transpose() * K.block<3, 3>(3 * a, 3 * b) * own[static_cast<std::size_t>(j)]});
         if (i == j) diagonal += K.block<3, 3>(3 * a, 3 * b).trace() / (3.0 * mesh.n_nodes());
       }
   }
@@ -99,9 +101,14 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
     for (const int i : mesh_.elements[static_cast<std::size_t>(e)]) inertia_[i] += per_volume * elements_.volume(e) / 8.0;
   held_.assign(static_cast<std::size_t>(n), 0);
   for (const int i : mesh_.held) held_[static_cast<std::size_t>(i)] = 1;
-  for (const auto& own : neighbours_) rest_span_.push_back(span_of(mesh_.nodes, own));
-  factor_ = SlabFactor(mesh_.slab, first_matrix(mesh_, elements_, inertia_, held_));
-  springs_ = WallSprings(factor_, mesh_);
+  std::vector<Mat3> own;  // directions
+  for (const auto& next : neighbours_) {
+    const Mat3 span = span_of(mesh_.nodes, next);
+    own.push_back(frame_of(span));
+    rest_inverse_.push_back(span.inverse() * own.back());
+  }
+  matrix_ = WallMatrix(mesh_, first_matrix(mesh_, elements_, inertia_, held_, own));
+  springs_ = WallSprings(n);
   clamp_.resize(mesh_.edge_ring.size());
   pressure_.assign(clamp_.size(), 0.0);
   longest_move_ = 0.0;
@@ -204,9 +211,9 @@ Vec3 VesselWall::Load::answer(const Vec3& moved, double& energy) noexcept {
 void VesselWall::find_frames(const Points& x) noexcept {
   for (std::size_t i = 0; i < turn_.size(); ++i) {
     const Mat3 span = span_of(x, neighbours_[i]);
-    turn_[i] = span * rest_span_[i].inverse();
+    turn_[i] = span * rest_inverse_[i];
     const double J = turn_[i].determinant();
-    if (!(J > kLeastStretch && turn_[i].squaredNorm() < kMostStretch)) turn_[i] = frame_of(span) * frame_of(rest_span_[i]).transpose();
+    if (!(J > kLeastStretch && turn_[i].squaredNorm() < kMostStretch)) turn_[i] = frame_of(span);
   }
 }
 
@@ -264,10 +271,10 @@ void VesselWall::gather_springs() noexcept {
   springs_.clear();
   for (int k = 0; k < n_loads_; ++k) {
     Load& l = loads_[static_cast<std::size_t>(k)];
-    l.in_matrix = l.stiff() && springs_.add({l.node, l.weight, l.present()}, turn_);
+    l.in_matrix = l.stiff() && springs_.add({l.node, l.weight, l.present()}, turn_, matrix_);
     l.stuck_in_matrix = l.sticks;
   }
-  springs_.prepare();
+  springs_.prepare(matrix_);
 }
 
 /// Has something that stands against the wall come to touch it, or left it?
@@ -281,8 +288,8 @@ void VesselWall::precondition(Eigen::VectorXf& b) noexcept {
   const int n = mesh_.n_nodes();
   for (const int i : mesh_.held) b.segment<3>(3 * i).setZero();
   for (int i = 0; i < n; ++i) turned_.segment<3>(3 * i) = turn_[static_cast<std::size_t>(i)].transpose().cast<float>() * b.segment<3>(3 * i);
-  factor_.solve(turned_);
-  springs_.correct(turned_);
+  matrix_.solve(turned_);
+  springs_.correct(matrix_, turned_);
   for (int i = 0; i < n; ++i) b.segment<3>(3 * i) = turn_[static_cast<std::size_t>(i)].cast<float>() * turned_.segment<3>(3 * i);
   for (const int i : mesh_.held) b.segment<3>(3 * i).setZero();
 }

@@ -19,7 +19,7 @@
 
 #include "collision/surface_tree.h"
 #include "physics/vessel_wall_element.h"
-#include "physics/vessel_wall_factor.h"
+#include "physics/vessel_wall_matrix.h"
 #include "physics/vessel_wall_pairs.h"
 #include "physics/vessel_wall_springs.h"
 #include "physics/wall_meeting.h"
@@ -165,8 +165,8 @@ class VesselWall {
   Eigen::VectorXd inertia_;           // [N/m], of each node, (1 + a h) m / h^2
   std::vector<char> held_;
   std::vector<std::array<int, 6>> neighbours_;  // of each node: inner, outer, before, after, left, right
-  std::vector<Mat3> rest_span_;
-  SlabFactor factor_;
+  std::vector<Mat3> rest_inverse_;              // of the span at rest, by the node's own directions then: outward, along, around
+  WallMatrix matrix_;
   WallSprings springs_;
   WallMeetings meetings_;
   SurfaceTree tree_;

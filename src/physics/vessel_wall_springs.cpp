@@ -6,20 +6,9 @@
 
 namespace filum {
 
-WallSprings::WallSprings(const SlabFactor& factor, const VesselMesh& mesh) : part_of_(mesh.node_part) {
+WallSprings::WallSprings(int n_nodes) {
   springs_.resize(kMost);
-  for (int i = 0; i < mesh.n_nodes();) {
-    int end = i;
-    while (end < mesh.n_nodes() && part_of_[static_cast<std::size_t>(end)] == part_of_[static_cast<std::size_t>(i)]) ++end;
-    Part p;
-    p.first = i;
-    const int slab = mesh.slab.front();
-    if (end - i <= kLargestPart)
-      p.inverse = factor.inverse(mesh.slab[static_cast<std::size_t>(i)] - slab, mesh.slab[static_cast<std::size_t>(end) - 1] - slab + 1);
-    parts_.push_back(std::move(p));
-    i = end;
-  }
-  mark_.assign(part_of_.size(), -1);
+  mark_.assign(static_cast<std::size_t>(n_nodes), -1);
   nodes_.reserve(8 * kMost);
   near_.resize(24 * kMost, 24 * kMost);
   moved_.resize(24 * kMost, 3);
@@ -28,11 +17,9 @@ WallSprings::WallSprings(const SlabFactor& factor, const VesselMesh& mesh) : par
   load_.resize(3 * kMost);
 }
 
-bool WallSprings::add(const WallSpring& spring, const std::vector<Mat3>& turn) noexcept {
-  const int part = part_of_[static_cast<std::size_t>(spring.node[0])];
-  if (n_ == kMost || parts_[static_cast<std::size_t>(part)].inverse.size() == 0) return false;
+bool WallSprings::add(const WallSpring& spring, const std::vector<Mat3>& turn, const WallMatrix& P) noexcept {
+  if (n_ == kMost || !P.known(P.part_of(spring.node[0]))) return false;
   Spring& s = springs_[static_cast<std::size_t>(n_++)];
-  s.part = part;
   s.node = spring.node;
   for (std::size_t a = 0; a < 8; ++a)
     s.blocks[a] = (spring.weight[static_cast<int>(a)] * turn[static_cast<std::size_t>(spring.node[a])]).cast<float>();
@@ -49,7 +36,7 @@ Eigen::Vector3f WallSprings::at(const Spring& s, const Eigen::Ref<const Eigen::V
 }
 
 /// The inverse among the nodes that springs stand on; nothing between parts.
-void WallSprings::gather_inverse() noexcept {
+void WallSprings::gather_inverse(const WallMatrix& P) noexcept {
   for (const int i : nodes_) mark_[static_cast<std::size_t>(i)] = -1;
   nodes_.clear();
   for (int k = 0; k < n_; ++k)
@@ -59,23 +46,20 @@ void WallSprings::gather_inverse() noexcept {
       place = 3 * static_cast<int>(nodes_.size());
       nodes_.push_back(i);
     }
-  for (std::size_t j = 0; j < nodes_.size(); ++j) {
-    const int part = part_of_[static_cast<std::size_t>(nodes_[j])];
-    const Part& p = parts_[static_cast<std::size_t>(part)];
+  for (std::size_t j = 0; j < nodes_.size(); ++j)
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       auto block = near_.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j));
-      if (part_of_[static_cast<std::size_t>(nodes_[i])] == part)
-        block = p.inverse.block<3, 3>(3 * (nodes_[i] - p.first), 3 * (nodes_[j] - p.first));
+      if (P.part_of(nodes_[i]) == P.part_of(nodes_[j]))
+        block = P.inverse(nodes_[i], nodes_[j]);
       else
         block.setZero();
     }
-  }
 }
 
-bool WallSprings::prepare() noexcept {
+bool WallSprings::prepare(const WallMatrix& P) noexcept {
   ready_ = false;
   if (n_ == 0) return false;
-  gather_inverse();
+  gather_inverse(P);
   const auto used = static_cast<Eigen::Index>(3 * nodes_.size());
   for (int j = 0; j < n_; ++j) {
     const Spring& s = springs_[static_cast<std::size_t>(j)];
@@ -100,7 +84,7 @@ bool WallSprings::prepare() noexcept {
   return ready_;
 }
 
-void WallSprings::correct(Eigen::Ref<Eigen::VectorXf> x) noexcept {
+void WallSprings::correct(WallMatrix& P, Eigen::Ref<Eigen::VectorXf> x) noexcept {
   if (!ready_) return;
   for (int k = 0; k < n_; ++k) {
     const Spring& s = springs_[static_cast<std::size_t>(k)];
@@ -116,11 +100,7 @@ void WallSprings::correct(Eigen::Ref<Eigen::VectorXf> x) noexcept {
     const Eigen::Vector3f f = s.root * load.segment<3>(3 * k);
     for (std::size_t a = 0; a < 8; ++a) share_.segment<3>(mark_[static_cast<std::size_t>(s.node[a])]) += s.blocks[a].transpose() * f;
   }
-  for (std::size_t j = 0; j < nodes_.size(); ++j) {
-    const Part& p = parts_[static_cast<std::size_t>(part_of_[static_cast<std::size_t>(nodes_[j])])];
-    x.segment(3 * p.first, p.inverse.rows()).noalias() -=
-        p.inverse.middleCols<3>(3 * (nodes_[j] - p.first)) * share_.segment<3>(static_cast<Eigen::Index>(3 * j));
-  }
+  P.subtract(nodes_, share_, x);
 }
 
 }  // namespace filum

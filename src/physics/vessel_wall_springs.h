@@ -1,15 +1,14 @@
 #pragma once
 // Springs at material points, brought into the wall's first matrix: (P + J^T S J)^-1 = P^-1 - C L (I + L^T W L)^-1 L^T C^T with
 // C = P^-1 J^T, W = J C, S = L L^T (Woodbury). A needle or thread in its track is a hundred times stiffer than the tissue about it; left
-// out of P, each such point costs the iteration several rounds. P never changes, so its inverse over each part is kept whole, in
+// out of P, each such point costs the iteration several rounds. P never changes, so its inverse is kept (WallMatrix), in
 // single precision, and only what joins the springs' own nodes is read to make the correction: springs that come and go within a step are
-// cheap. Parts of more than kLargestPart nodes go without. Test: vessel_wall_springs_test.
+// cheap. Parts whose inverse is not kept go without. Test: vessel_wall_springs_test.
 
 #include <array>
 #include <vector>
 
-#include "physics/vessel_wall_factor.h"
-#include "physics/vessel_mesh.h"
+#include "physics/vessel_wall_matrix.h"
 
 namespace filum {
 
@@ -22,37 +21,30 @@ struct WallSpring {
 class WallSprings {
  public:
   static constexpr int kMost = 24;            // springs: more are left to the iteration
-  static constexpr int kLargestPart = 1200;   // nodes
 
   WallSprings() = default;
-  WallSprings(const SlabFactor& factor, const VesselMesh& mesh);
+  explicit WallSprings(int n_nodes);
 
   void clear() noexcept { n_ = 0; }
-  /// False if there is no room or the part is too large. `turn` maps the matrix's directions into those of the present.
-  bool add(const WallSpring& spring, const std::vector<Mat3>& turn) noexcept;
+  /// False if there is no room or the part's inverse is not kept. `turn` maps the matrix's directions into those of the present.
+  bool add(const WallSpring& spring, const std::vector<Mat3>& turn, const WallMatrix& P) noexcept;
   /// After the last add(). False if the correction cannot be made; then correct() does nothing.
-  bool prepare() noexcept;
+  bool prepare(const WallMatrix& P) noexcept;
   /// From P^-1 b to (P + J^T S J)^-1 b, in place, in the matrix's own directions.
-  void correct(Eigen::Ref<Eigen::VectorXf> x) noexcept;
+  void correct(WallMatrix& P, Eigen::Ref<Eigen::VectorXf> x) noexcept;
   int size() const noexcept { return n_; }
 
  private:
-  struct Part {
-    int first = 0;            // node
-    Eigen::MatrixXf inverse;  // empty: too large
-  };
   struct Spring {
-    int part;
     std::array<int, 8> node;
     std::array<Eigen::Matrix3f, 8> blocks;  // of J
     Eigen::Matrix3f root;                   // L
   };
   Eigen::Vector3f at(const Spring& s, const Eigen::Ref<const Eigen::VectorXf>& x) const noexcept;
 
-  std::vector<Part> parts_;
-  std::vector<int> part_of_;
+  void gather_inverse(const WallMatrix& P) noexcept;
+
   std::vector<Spring> springs_;
-  void gather_inverse() noexcept;
 
   std::vector<int> nodes_;   // that springs stand on
   std::vector<int> mark_;    // of each node: its first row in near_, -1: none
