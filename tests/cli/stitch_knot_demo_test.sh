@@ -1,11 +1,11 @@
 #!/bin/bash
 # The demonstration of one stitch with its whole knot, by device poses only: a square knot that holds both bites and stays when both ends are
-# cut, no torn wall, no broken thread; its recording replays bit for bit. Usage: stitch_knot_demo_test.sh FILUM ROOT
-filum=$1 root=$2
+# cut, no torn wall, no broken thread; its recording replays bit for bit. Usage: stitch_knot_demo_test.sh FILUM ROOT TASK
+filum=$1 root=$2 task=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "stitch_knot_demo_test: $*"; head -c 3000 "$work"/run.json; exit 1; }
-"$filum" run stitch-knot --root "$root" --input demo --record "$work/knot.filum" --json >"$work/run.json" 2>"$work/run.err" || fail "run: $(cat "$work/run.err")"
+"$filum" run "$task" --root "$root" --input demo --record "$work/knot.filum" --json >"$work/run.json" 2>"$work/run.err" || fail "run: $(cat "$work/run.err")"
 node -e '
   const d = JSON.parse(require("fs").readFileSync(process.argv[1])), s = d.stitches;
   const count = (name) => d.events.filter((e) => e.name === name).length;
