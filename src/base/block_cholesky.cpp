@@ -85,8 +85,7 @@ void BlockCholesky::order() noexcept {
   int floor = 0;  // no remaining node has a degree below this
   while (static_cast<int>(order_.size()) < n_) {
     int best = -1;
-    for (int k = 0; k < n_; ++k) {
-      const int i = (scan + k) % n_;
+    for (int k = 0, i = scan; k < n_; ++k, i = i + 1 < n_ ? i + 1 : 0) {
       if (position_[i] >= 0) continue;
       if (best < 0 || degree_[i] < degree_[best]) best = i;
       if (degree_[best] <= floor) break;

@@ -59,44 +59,40 @@ inline SegmentPair pressed_points(const Vec3& p0, const Vec3& p1, const Vec3& q0
 /// Where a segment p0-p1 presses on a tapered bar (axis q0-q1, radius r0 at q0, r1 at q1, longer than it tapers): minimises distance
 /// of the axes minus radius, so that the gap's derivative is along `d` whatever the taper; the segment leans as in pressed_points.
 /// At the optimum dD/dt = r1 - r0; with D(t)^2 = D0^2 + k^2 (t - t0)^2 that puts t off the closest point t0 of the axes by
-/// (r1 - r0) D0 / (k sqrt(k^2 - (r1 - r0)^2)). The gap is convex in (s, t): if its optimum is outside, the least on the
-/// border of the square is the answer.
+/// (r1 - r0) D0 / (k sqrt(k^2 - (r1 - r0)^2)). The gap is convex in (s, t): if its optimum is outside, the least on those sides of
+/// the square that are seen from there is the answer.
 inline SegmentPair pressed_on_bar(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double r0, double r1,
                                 double spread2) noexcept {
-  const double taper = r1 - r0;
-  Eigen::Vector4d u, v, w;
-  u << p1 - p0, std::sqrt(spread2);
-  v << q1 - q0, 0.0;
-  w << p0 - q0, -0.5 * u[3];
-  const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v);
-  const auto along_bar = [&](const Eigen::Vector4d& from_q0, double k2, const Eigen::Vector4d& across_u) {  // t, unbounded
-    const double t0 = across_u.dot(from_q0) / k2;
-    Eigen::Vector4d d0 = from_q0 - t0 * v;
-    if (k2 != e) d0 -= u.dot(d0) / a * u;
-    return t0 + taper * d0.norm() / std::sqrt(k2 * (k2 - taper * taper));
+  const Vec3 u = p1 - p0, v = q1 - q0, w = p0 - q0;
+  const double taper = r1 - r0, a = u.squaredNorm() + spread2, b = u.dot(v), c = u.dot(w) - 0.5 * spread2;
+  const double e = v.squaredNorm(), f = v.dot(w), g = w.squaredNorm() + 0.25 * spread2;
+  const auto along_bar = [taper](double k2, double on_v, double d2) {  // t, unbounded; d2: squared distance of the bar's start
+    const double t0 = on_v / k2;
+    return t0 + taper * std::sqrt(std::max(0.0, d2 - t0 * on_v) / (k2 * (k2 - taper * taper)));
   };
-  const auto along_segment = [&](double t) { return u.dot(t * v - w) / a; };
+  const auto along_segment = [&](double t) { return (b * t - c) / a; };
   const auto pair_at = [&](double s, double t) {
-    const Eigen::Vector4d d = w + s * u - t * v;
-    return SegmentPair{s, t, d.head<3>(), d.norm()};
+    const Vec3 d = w + s * u - t * v;
+    return SegmentPair{s, t, d, std::sqrt(d.squaredNorm() + spread2 * (s - 0.5) * (s - 0.5))};
   };
-  const double k2 = e - b * b / a;
-  if (k2 > 1.01 * taper * taper) {
-    const double t = along_bar(w, k2, v - b / a * u), s = along_segment(t);
-    if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0) return pair_at(s, t);
-  }
+  const auto at_segment_end = [&](double s) { return pair_at(s, std::clamp(along_bar(e, f + s * b, g + s * (2.0 * c + s * a)), 0.0, 1.0)); };
+  const auto at_bar_end = [&](double t) { return pair_at(std::clamp(along_segment(t), 0.0, 1.0), t); };
   SegmentPair best;
   double least = std::numeric_limits<double>::infinity();
-  for (const double end : {0.0, 1.0}) {
-    const SegmentPair at_segment_end = pair_at(end, std::clamp(along_bar(w + end * u, e, v), 0.0, 1.0));
-    const SegmentPair at_bar_end = pair_at(std::clamp(along_segment(end), 0.0, 1.0), end);
-    for (const SegmentPair& c : {at_segment_end, at_bar_end}) {
-      const double gap = c.distance - r0 - c.t * taper;
-      if (gap >= least) continue;
-      least = gap;
-      best = c;
-    }
-  }
+  const auto offer = [&](const SegmentPair& pair) {
+    const double gap = pair.distance - pair.t * taper;
+    if (gap >= least) return;
+    least = gap;
+    best = pair;
+  };
+  const double k2 = e - b * b / a;
+  const bool parallel = k2 <= 1.01 * taper * taper;
+  const double t = parallel ? 0.0 : along_bar(k2, f - b * c / a, g - c * c / a), s = along_segment(t);
+  if (!parallel && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0) return pair_at(s, t);
+  if (parallel || s < 0.0) offer(at_segment_end(0.0));
+  if (parallel || s > 1.0) offer(at_segment_end(1.0));
+  if (parallel || t < 0.0) offer(at_bar_end(0.0));
+  if (parallel || t > 1.0) offer(at_bar_end(1.0));
   return best;
 }
 

@@ -12,6 +12,7 @@ namespace {
 constexpr int kMostHalvings = 14;
 constexpr int kMostTethers = 256;
 constexpr int kMoreToArrive = 3;  // times the iterations while a body is under way: the next step takes it for arrived, and it must not jump over thread
+constexpr int kLoadsFall = 6;       // iterations of a step in which friction's loads follow the normal forces down
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
 constexpr double kLeastReach = 0.05;    // [radii], of the search for near pairs
 constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
@@ -66,8 +67,9 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
   for (;; ++summary.iterations) {
     summary.arrived = advance_boundary(s);
     fit_geometry(s);
-    contact_.update(x_, material.radius, contact_material, FrictionLoad::falling);
-    obstacles.update(x_, material.radius, contact_material, FrictionLoad::falling);
+    const FrictionLoad load = summary.iterations < kLoadsFall ? FrictionLoad::falling : FrictionLoad::kept;
+    contact_.update(x_, material.radius, contact_material, load);
+    obstacles.update(x_, material.radius, contact_material, contact_.travel, load);
     assemble_gradient(s, o);
     summary.residual = gradient_.leftCols(s.n).topRows<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     const double moment = gradient_.leftCols(s.n).row(3).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / material.radius;
@@ -142,7 +144,7 @@ void ImplicitRod::expect_moves(const RodState& s, double dt) noexcept {
 void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept {
   advance_boundary(s);
   contact_.update(x_, material.radius, contact_material, FrictionLoad::anew);
-  obstacles.update(x_, material.radius, contact_material, FrictionLoad::anew);
+  obstacles.update(x_, material.radius, contact_material, contact_.travel, FrictionLoad::anew);
   move_.leftCols(s.n).topRows<3>() = o.dt * s.v.leftCols(s.n);
   move_.leftCols(s.n).row(3) = o.dt * s.theta_dot.head(s.n).transpose();
   for (int i = 0; i < s.n; ++i)
@@ -169,12 +171,12 @@ double ImplicitRod::free_fraction(const RodState& s, const RodMemory& memory) no
   if (travel.within_reach() < fraction) {
     for (int j = 0; j + 1 < s.n; ++j) travel.reach[j] = 2.0 * material.radius + fraction * travel.stride(j);
     find_near(s, memory);
-    contact_.update(x_, material.radius, contact_material, FrictionLoad::falling);
-    obstacles.update(x_, material.radius, contact_material, FrictionLoad::falling);
+    contact_.update(x_, material.radius, contact_material, FrictionLoad::kept);
+    obstacles.update(x_, material.radius, contact_material, contact_.travel, FrictionLoad::kept);
     fraction = contact_.overflowed() ? 0.0 : std::min(fraction, travel.within_reach());
   }
   if (self_contact) fraction = std::min(fraction, contact_.free_fraction(x_, move_, material.radius));
-  return std::min(fraction, obstacles.free_fraction(x_, move_, material.radius));
+  return std::min(fraction, obstacles.free_fraction(x_, move_, material.radius, contact_.travel));
 }
 
 /// Goes `fraction` of move_ if the energy there is at most `highest`.
@@ -243,7 +245,7 @@ bool ImplicitRod::advance_boundary(const RodState& s) noexcept {
   contact_.travel.look_along(boundary_move_);
   double fraction = 1.0;
   if (self_contact) fraction = contact_.free_fraction(x_, boundary_move_, material.radius);
-  fraction = std::min(fraction, obstacles.free_fraction(x_, boundary_move_, material.radius));
+  fraction = std::min(fraction, obstacles.free_fraction(x_, boundary_move_, material.radius, contact_.travel));
   geometry_fits_ = false;
   contact_.travel.went(fraction);
   x_.leftCols(s.n) += fraction * boundary_move_.leftCols(s.n).topRows<3>();

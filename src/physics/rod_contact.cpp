@@ -12,7 +12,7 @@
 namespace filum {
 namespace {
 
-constexpr double kJoin = 3.0;  // [radii], distance of the axes below which a pair takes part in the matrix
+constexpr double kJoin = 2.5;  // [radii], distance of the axes below which a pair takes part in the matrix
 constexpr int kChunk = 8;  // edges in one box of the broad phase
 
 struct Weights {
@@ -211,7 +211,7 @@ void RodContact::update(const Points& x, double radius, const ContactMaterial& m
     const double length = c.d.norm();
     p.normal = c.d / length;
     p.force = -pair_potential(c.distance, radius, m.stiffness).slope * length / c.distance;
-    p.load = load == FrictionLoad::anew ? p.force : std::min(p.load, p.force);
+    p.load = friction_load(load, p.load, p.force);
     join(p, p.force > 0.0);
   }
 }

@@ -58,8 +58,13 @@ struct RodPair {
 
 /// The normal force that friction goes by within a step: the one at the step's start, or the present one if that is less. (Solving for both
 /// together has no convex sum to minimise, and going by the present force alone swings: a strand that presses deeper in one iteration is held harder
-/// in the next. Li et al. 2020, section 5.4, keep it for the whole step.) What touches first in this step slides freely in it.
-enum class FrictionLoad { anew, falling };
+/// in the next. Li et al. 2020, section 5.4, keep it for the whole step.) What touches first in this step slides freely in it. Once it is kept
+/// the sum to minimise no longer changes from iteration to iteration; what has parted has no friction even then.
+enum class FrictionLoad { anew, falling, kept };
+inline double friction_load(FrictionLoad which, double load, double force) noexcept {
+  if (which == FrictionLoad::anew) return force;
+  return which == FrictionLoad::falling || force <= 0.0 ? std::min(load, force) : load;
+}
 
 class RodContact {
  public:
@@ -74,6 +79,8 @@ class RodContact {
   /// part in the matrix: most are there only to bound the move. Pairs known before keep their load of friction, others have none.
   void find_pairs(const RodState& s, const Points& x, double radius) noexcept;
   const std::vector<RodPair>& pairs() const noexcept { return pairs_; }
+  /// [m], the axes are not closer than this.
+  double at_least(const RodPair& p) const noexcept { return p.distance - (gone(p) - p.measured_at); }
   bool overflowed() const noexcept { return overflowed_; }
 
   /// True if pairs have been joined since find_slots().
@@ -112,7 +119,6 @@ class RodContact {
   int n_joined() const noexcept;
   double gone(const RodPair& p) const noexcept { return travel.gone(p.i) + travel.gone(p.j); }
   double stride(const RodPair& p) const noexcept { return travel.stride(p.i) + travel.stride(p.j); }
-  double at_least(const RodPair& p) const noexcept { return p.distance - (gone(p) - p.measured_at); }  // [m], distance of the axes
   void join(RodPair& p, bool touches) noexcept;
   void add_turn(const RodPair& p, const Points& x, double radius, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;
   void add_block(const RodPair& p, const Mat3& k, const ChainSlots& chain, BlockCholesky& matrix) const noexcept;

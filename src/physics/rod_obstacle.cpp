@@ -41,12 +41,20 @@ RodObstacles::RodObstacles(int touch_capacity) {
   known_.reserve(static_cast<std::size_t>(touch_capacity));
 }
 
-void RodObstacles::collect(int edge, int obstacle, double s) noexcept {
+void RodObstacles::collect(int edge, int obstacle, double s, double gap) noexcept {
   if (touches_.size() == touches_.capacity()) return;
   ObstacleTouch& t = touches_.emplace_back();
   t.edge = edge;
   t.obstacle = obstacle;
   t.s = s;
+  t.gap = gap;
+}
+
+void RodObstacles::place(std::size_t obstacle) noexcept {
+  const Obstacle& o = obstacles[obstacle];
+  const Pose& X = bodies[static_cast<std::size_t>(o.body)].X_now;
+  a_W_[obstacle] = X * o.a_B;
+  b_W_[obstacle] = X * o.b_B;
 }
 
 void RodObstacles::find_touches(const RodState& s, const Points& x, double radius, const Eigen::VectorXd& reach, double body_reach) noexcept {
@@ -54,11 +62,8 @@ void RodObstacles::find_touches(const RodState& s, const Points& x, double radiu
   touches_.clear();
   a_W_.resize(obstacles.size());
   b_W_.resize(obstacles.size());
-  for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    const Pose& X = bodies[static_cast<std::size_t>(obstacles[k].body)].X_now;
-    a_W_[k] = X * obstacles[k].a_B;
-    b_W_[k] = X * obstacles[k].b_B;
-  }
+  gone_.assign(obstacles.size(), 0.0);
+  for (std::size_t k = 0; k < obstacles.size(); ++k) place(k);
   double arc = s.arc_start;
   for (int j = 0; j + 1 < s.n; arc += s.rest_length[j++]) {
     const bool parted = s.alive[j] == 0;  // its first node still ends a piece that may lie on the sheet
@@ -69,16 +74,17 @@ void RodObstacles::find_touches(const RodState& s, const Points& x, double radiu
       if (arc + s.rest_length[j] > o.ignore_from && arc < o.ignore_to) continue;
       if (o.kind == Obstacle::Kind::plane) {
         const Vec3 n = (b_W_[k] - a_W_[k]).normalized();
-        if (n.dot(x.col(j) - a_W_[k]) < margin) collect(j, k, 0.0);
-        if (j + 2 == s.n && n.dot(x.col(j + 1) - a_W_[k]) < margin) collect(j, k, 1.0);
+        const double above = n.dot(x.col(j) - a_W_[k]), last = n.dot(x.col(j + 1) - a_W_[k]);
+        if (above < margin) collect(j, k, 0.0, above - radius);
+        if (j + 2 == s.n && last < margin) collect(j, k, 1.0, last - radius);
         continue;
       }
       if (parted) continue;
-      const double near = margin + std::max(o.r_a, o.r_b);
+      const double thickest = std::max(o.r_a, o.r_b), near = margin + thickest;
       if (((low - a_W_[k].cwiseMax(b_W_[k])).array() > near).any()) continue;
       if (((a_W_[k].cwiseMin(b_W_[k]) - high).array() > near).any()) continue;
       const SegmentPair c = closest_points(x.col(j), x.col(j + 1), a_W_[k], b_W_[k]);
-      if (c.distance < margin + bar_radius(o, c.t)) collect(j, k, c.s);
+      if (c.distance < margin + bar_radius(o, c.t)) collect(j, k, c.s, c.distance - radius - thickest);
     }
   }
   keep_loads();
@@ -115,25 +121,32 @@ bool RodObstacles::advance_bodies(const Points& x, double radius) noexcept {
   bool there = true;
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
     ObstacleBody& body = bodies[static_cast<std::size_t>(b)];
+    if (body.X_now.p == body.X_end.p && body.X_now.q.coeffs() == body.X_end.q.coeffs()) continue;
     double fraction = 1.0;
     for (const ObstacleTouch& t : touches_) {
       const Obstacle& o = obstacles[static_cast<std::size_t>(t.obstacle)];
       if (o.body != b || o.kind == Obstacle::Kind::plane) continue;
       const Vec3 ends[4] = {x.col(t.edge), x.col(t.edge + 1), body.X_now * o.a_B, body.X_now * o.b_B};
       const Vec3 moves[4] = {Vec3::Zero(), Vec3::Zero(), body.X_end * o.a_B - ends[2], body.X_end * o.b_B - ends[3]};
-      const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
-      const double keep = std::min(0.6 * (radius + bar_radius(o, t.t)), 0.8 * distance);
+      const SegmentPair c = closest_points(ends[0], ends[1], ends[2], ends[3]);
+      const double keep = std::min(0.6 * (radius + bar_radius(o, c.t)), 0.8 * c.distance);
       fraction = std::min(fraction, conservative_advance(ends, moves, keep));
     }
     body.X_now = fraction >= 1.0 ? body.X_end : between(body.X_now, body.X_end, fraction);
     there = there && fraction >= 1.0;
-  }
-  for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    const Pose& X = bodies[static_cast<std::size_t>(obstacles[k].body)].X_now;
-    a_W_[k] = X * obstacles[k].a_B;
-    b_W_[k] = X * obstacles[k].b_B;
+    carry_bars(b);
   }
   return there;
+}
+
+/// Puts the obstacles of a body where it is now.
+void RodObstacles::carry_bars(int body) noexcept {
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (obstacles[k].body != body) continue;
+    const Vec3 a = a_W_[k], b = b_W_[k];
+    place(k);
+    gone_[k] += std::max((a_W_[k] - a).norm(), (b_W_[k] - b).norm());
+  }
 }
 
 void RodObstacles::measure(const Points& x, double radius, ObstacleTouch& touch) const noexcept {
@@ -160,12 +173,17 @@ Vec3 RodObstacles::trial_bristle(const ObstacleTouch& t, const Points& x, const 
   return xi - xi.dot(t.normal) * t.normal;
 }
 
-void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept {
+void RodObstacles::update(const Points& x, double radius, const ContactMaterial& m, const RodTravel& travel, FrictionLoad load) noexcept {
   const StageScope stage("contact laws");
   for (ObstacleTouch& t : touches_) {
+    if (obstacles[static_cast<std::size_t>(t.obstacle)].kind == Obstacle::Kind::bar && at_least(t, travel) > 0.0) {
+      t.force = t.load = 0.0;
+      continue;
+    }
     measure(x, radius, t);
+    t.measured_at = gone(t, travel);
     t.force = -wall(t.gap, radius, m).slope;
-    t.load = load == FrictionLoad::anew ? t.force : std::min(t.load, t.force);
+    t.load = friction_load(load, t.load, t.force);
   }
 }
 
@@ -173,7 +191,7 @@ double RodObstacles::energy(const Points& x, const Points& x_start, double radiu
                             double fraction) const noexcept {
   double u = 0.0;
   for (const ObstacleTouch& t : touches_) {
-    if (t.gap > fraction * travel.stride(t.edge)) continue;
+    if (at_least(t, travel) > fraction * travel.stride(t.edge)) continue;
     ObstacleTouch trial = t;
     measure(x, radius, trial);
     u += wall(trial.gap, radius, m).energy;
@@ -220,17 +238,17 @@ void RodObstacles::add_stiffness(const Points& x, double radius, const ContactMa
   }
 }
 
-double RodObstacles::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept {
+double RodObstacles::free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius, const RodTravel& travel) const noexcept {
   double fraction = 1.0;
   for (const ObstacleTouch& t : touches_) {
     const auto k = static_cast<std::size_t>(t.obstacle);
-    if (obstacles[k].kind == Obstacle::Kind::plane) continue;
+    if (obstacles[k].kind == Obstacle::Kind::plane || at_least(t, travel) > travel.stride(t.edge)) continue;
     const Vec3 ends[4] = {x.col(t.edge), x.col(t.edge + 1), a_W_[k], b_W_[k]};
     const Vec3 moves[4] = {fraction * move.col(t.edge).head<3>(), fraction * move.col(t.edge + 1).head<3>(), Vec3::Zero(),
                            Vec3::Zero()};
-    const double distance = closest_points(ends[0], ends[1], ends[2], ends[3]).distance;
-    const double keep = closest_allowed(radius + bar_radius(obstacles[k], t.t), distance, radius);
-    if (std::max(moves[0].norm(), moves[1].norm()) <= distance - keep) continue;
+    const SegmentPair c = closest_points(ends[0], ends[1], ends[2], ends[3]);
+    const double keep = closest_allowed(radius + bar_radius(obstacles[k], c.t), c.distance, radius);
+    if (std::max(moves[0].norm(), moves[1].norm()) <= c.distance - keep) continue;
     fraction *= conservative_advance(ends, moves, keep);
   }
   return fraction;

@@ -32,7 +32,8 @@ struct ObstacleTouch {
   int edge = 0, obstacle = 0;
   double s = 0, t = 0;                // along the edge, along the bar
   Vec3 normal = Vec3::UnitZ();        // unit, from the obstacle to the thread
-  double gap = 1;                     // [m], between the surfaces
+  double gap = 1;                     // [m], at least, between the surfaces when edge and bar had gone `measured_at` [m]
+  double measured_at = 0;
   double force = 0;                   // [N], normal
   double load = 0;                    // [N], normal force by which friction goes, see FrictionLoad
   Vec3 xi_start = Vec3::Zero();       // [m], turned with the body
@@ -56,7 +57,8 @@ class RodObstacles {
   /// Moves every body on towards X_end as far as the thread at x lets it without being jumped over. True when all are there.
   bool advance_bodies(const Points& x, double radius) noexcept;
 
-  void update(const Points& x, double radius, const ContactMaterial& m, FrictionLoad load) noexcept;
+  /// Measures what can touch by now; the rest has no force. `travel`: of the thread since find_touches().
+  void update(const Points& x, double radius, const ContactMaterial& m, const RodTravel& travel, FrictionLoad load) noexcept;
   /// Potential [J] at x, `fraction` of the travel's move in question from where the nodes were at the last update.
   double energy(const Points& x, const Points& x_start, double radius, const ContactMaterial& m, const RodTravel& travel,
                 double fraction) const noexcept;
@@ -64,18 +66,27 @@ class RodObstacles {
                     Eigen::Matrix4Xd& gradient) noexcept;
   void add_stiffness(const Points& x, double radius, const ContactMaterial& m, const ChainSlots& chain,
                      BlockCholesky& matrix) const noexcept;
-  double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius) const noexcept;
+  double free_fraction(const Points& x, const Eigen::Matrix4Xd& move, double radius, const RodTravel& travel) const noexcept;
 
   const std::vector<ObstacleTouch>& touches() const noexcept { return touches_; }
+  /// [m], the gap is not smaller than this.
+  double at_least(const ObstacleTouch& t, const RodTravel& travel) const noexcept { return t.gap - (gone(t, travel) - t.measured_at); }
 
  private:
   void measure(const Points& x, double radius, ObstacleTouch& touch) const noexcept;
   Vec3 trial_bristle(const ObstacleTouch& touch, const Points& x, const Points& x_start) const noexcept;
+  double gone(const ObstacleTouch& t, const RodTravel& travel) const noexcept {
+    const auto k = static_cast<std::size_t>(t.obstacle);
+    return obstacles[k].kind == Obstacle::Kind::plane ? 0.0 : travel.gone(t.edge) + gone_[k];  // planes are always measured
+  }
   void keep_loads() noexcept;
-  void collect(int edge, int obstacle, double s) noexcept;
+  void collect(int edge, int obstacle, double s, double gap) noexcept;
+  void place(std::size_t obstacle) noexcept;
+  void carry_bars(int body) noexcept;
 
   std::vector<ObstacleTouch> touches_, known_;
   std::vector<Vec3> a_W_, b_W_;  // [m], axis ends of each obstacle at X_now
+  std::vector<double> gone_;     // [m], how far they have moved since find_touches()
 };
 
 }  // namespace filum

@@ -57,9 +57,9 @@ struct Near {
   /// Whether another strand or a body is within `room` [m] of edge j's surface.
   bool any(int j, double radius, double room) const noexcept {
     for (const RodPair& p : contact.pairs())
-      if ((p.i == j || p.j == j) && p.distance < 2.0 * radius + room) return true;
+      if ((p.i == j || p.j == j) && contact.at_least(p) < 2.0 * radius + room) return true;
     for (const ObstacleTouch& t : obstacles.touches())
-      if (t.edge == j && t.gap < room) return true;
+      if (t.edge == j && obstacles.at_least(t, contact.travel) < room) return true;
     return false;
   }
 };

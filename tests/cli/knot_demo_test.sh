@@ -20,7 +20,7 @@ tied() {
   ' "$work/run.json" "$class" "$throws" "$cuts" "$passes" || fail "$knot: not $class"
 }
 
-tied knot-granny granny 2 0 false
+tied knot-granny granny 2 2 false
 tied knot-surgeons surgeons 2 2 true
 tied knot-square square 2 2 true --record "$work/knot.filum"
 "$filum" replay "$work/knot.filum" --json >"$work/replay.json" || fail "replay: $(cat "$work/replay.json")"
