@@ -19,7 +19,7 @@ for micrometres in "${lengths[@]}"; do
   length=$(awk "BEGIN { print $own + $micrometres / 1000 }")
   sed "/^thread:/,/length:/s/length: \"[0-9.]* mm\"/length: \"$length mm\"/" "$root/curricula/$knot/scene.yaml" >"$scene"
   "$filum" run "$knot" --input demo --json --root "$work" >"$work/run.json" || { echo "knot_lengths_test: run failed at $length mm"; exit 1; }
-  said=$(node -e 'const d = JSON.parse(require("fs").readFileSync(process.argv[1])); console.log(d.stitches.length ? d.stitches[0].knot : d.knot.class, d.passed)' "$work/run.json")
+  said=$(node -e 'const d = JSON.parse(require("fs").readFileSync(process.argv[1])); console.log(d.stitches && d.stitches.length ? d.stitches[0].knot : d.knot.class, d.passed)' "$work/run.json")
   echo "$knot, $length mm: $said"
   [ "$said" = "$class true" ] && passed=$((passed + 1))
 done
