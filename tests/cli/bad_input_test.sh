@@ -50,8 +50,9 @@ expect "NaN in a script" 2 "nan.yaml" run knot-square --input "$work/nan.yaml"
 printf 'format: filum-suture/1\ntitle: no numbers\n' >"$work/model.yaml"
 expect "model without numbers" 2 "model.yaml" run knot-square --input "$work/short.yaml" --model "$work/model.yaml"
 
-# room for a recording's begin (the files of its scene), not for its steps
-if [ "$(id -u)" -eq 0 ] && mkdir "$work/full" && mount -t tmpfs -o size=480k tmpfs "$work/full" 2>/dev/null; then
+# room for a recording's begin (the files of its scene), not for its steps beside their journal
+"$filum" run knot-square --input "$work/short.yaml" --record "$work/whole" >/dev/null
+if [ "$(id -u)" -eq 0 ] && mkdir "$work/full" && mount -t tmpfs -o size=$(($(stat -c %s "$work/whole") / 1024 + 32))k tmpfs "$work/full" 2>/dev/null; then
   expect "full disk" 1 "$work/full/session" run knot-square --input "$work/short.yaml" --record "$work/full/session" --json
   mount -o remount,ro "$work/full"
   expect "read-only folder" 2 "$work/full" run knot-square --input "$work/short.yaml" --record "$work/full/other"
