@@ -1,6 +1,6 @@
 // vessel-inflation by the trainer's wall elements (physics/tube_slice): Hooke's law at vanishing strain for the linear part; for fibres, stiffening, tone
 // and the opening angle, alone or together, the pressure of a rubber wall that has them less that of one that has not, at equal motion and axial stretch,
-// as the reduced model adds them. Softening element by element (tube_softening) is not asked for in acceptance yet: its refit swings. What acts equally on the whole wall (relaxation) or from outside (tethering: a pressure on an incompressible wall
+// as the reduced model adds them. Softening element by element (tube_softening) is not asked for in acceptance yet: its refit seems to swing. What acts equally on the whole wall (relaxation) or from outside (tethering: a pressure on an incompressible wall
 // moves it alike on either side) changes nothing in a slice but its load and stays the reduced model's.
 
 #include <algorithm>
