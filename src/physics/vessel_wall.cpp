@@ -297,19 +297,10 @@ void VesselWall::precondition(Eigen::VectorXf& b) noexcept {
 /// Stiffness of a load as the pairs and the first matrix should know it. [N/m]
 Mat3 VesselWall::Load::felt() const noexcept { return one_sided && pushed <= 0.0 ? Mat3(Mat3::Zero()) : present(); }
 
-/// The answer of a pair without springs.
-void VesselWall::answer_alone(const WallHistory& h, int p) noexcept {
-  const auto s = h.s.col(p);
-  auto y = pairs_.answer(p);
-  y = h.y.col(p);
-  for (int i = 0; i < inertia_.size(); ++i) y.segment<3>(3 * i) += static_cast<float>(inertia_[i]) * s.segment<3>(3 * i);
-}
-
 /// What the pairs of earlier steps say with the springs of this one.
 void VesselWall::recall(const WallHistory& h) noexcept {
   const StageScope stage("wall: recall");
-  for (int k = 0; k < h.n; ++k) answer_alone(h, (h.newest - k + options_.memory) % options_.memory);
-  pairs_.note_all(h.s);
+  pairs_.note_all(h.s, h.y);
   for (int n = 0; n < n_loads_; ++n) loads_[static_cast<std::size_t>(n)].counted.setZero();
   count_springs(h);
 }
@@ -359,14 +350,15 @@ bool VesselWall::advance(const WallState& state) noexcept {
   return false;
 }
 
-/// A new pair says what the elements answered; what touches the wall comes and goes and is counted by itself.
+/// A new pair says what elements and inertia answered; what touches the wall comes and goes and is counted by itself.
 void VesselWall::add_pair(WallHistory& h) noexcept {
   const int p = (h.newest + 1) % options_.memory;
   h.s.col(p) = (flat(trial_x_) - flat(x_)).cast<float>();
   h.y.col(p) = (flat(elastic_) - flat(trial_elastic_)).cast<float>();  // gradients are minus forces
+  for (int i = 0; i < inertia_.size(); ++i) h.y.col(p).segment<3>(3 * i) += static_cast<float>(inertia_[i]) * h.s.col(p).segment<3>(3 * i);
   h.newest = p;
   h.n = std::min(h.n + 1, options_.memory);
-  answer_alone(h, p);
+  pairs_.answer(p) = h.y.col(p);
   for (int n = 0; n < n_loads_; ++n) {
     const Load& l = loads_[static_cast<std::size_t>(n)];
     if (l.counted.isZero(0.0)) continue;

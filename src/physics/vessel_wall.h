@@ -151,7 +151,6 @@ class VesselWall {
   void guess(const WallState& state) noexcept;
   double evaluate(const WallState& state) noexcept;  // energy [J] and residual at trial_x_; infinite if an element is inside out
   void precondition(Eigen::VectorXf& b) noexcept;
-  void answer_alone(const WallHistory& h, int p) noexcept;
   void count_springs(const WallHistory& h) noexcept;
   void recall(const WallHistory& h) noexcept;
   void direction(const WallHistory& h) noexcept;

@@ -13,6 +13,7 @@ WallPairs::WallPairs(int n, int most) {
   least_.setZero(most);
   order_.reserve(static_cast<std::size_t>(most));
   each_.setZero(most);
+  square_.setZero(most, most);
   alpha_.setZero(most);
   gamma_.setZero(most);
   moved_.setZero(3, most);
@@ -31,12 +32,11 @@ void WallPairs::note(const Eigen::MatrixXf& s, int p) noexcept {
   judge(s, p);
 }
 
-void WallPairs::note_all(const Eigen::MatrixXf& s) noexcept {
-  for (int p = 0; p < answers_.cols(); ++p) {
-    each_.noalias() = s.transpose() * answers_.col(p);
-    products_.col(p) = each_.cast<double>();
-    judge(s, p);
-  }
+void WallPairs::note_all(const Eigen::MatrixXf& s, const Eigen::MatrixXf& answers) noexcept {
+  answers_ = answers;
+  square_.noalias() = s.transpose() * answers_;
+  products_ = square_.cast<double>();
+  for (int p = 0; p < answers_.cols(); ++p) judge(s, p);
 }
 
 void WallPairs::stiffen(const Eigen::MatrixXf& s, const std::array<int, 8>& node, const Eigen::Matrix<double, 8, 1>& weight, const Mat3& stiffness) noexcept {

@@ -19,9 +19,10 @@ class WallPairs {
 
   /// [N], of pair p, to be written before note(p).
   Eigen::MatrixXf::ColXpr answer(int p) noexcept { return answers_.col(p); }
-  /// Pair p is new, or `all` are. The curvature must be positive, else a pair stays unused.
+  /// Pair p is new. The curvature must be positive, else a pair stays unused.
   void note(const Eigen::MatrixXf& s, int p) noexcept;
-  void note_all(const Eigen::MatrixXf& s) noexcept;
+  /// All are, with these answers.
+  void note_all(const Eigen::MatrixXf& s, const Eigen::MatrixXf& answers) noexcept;
   /// What the answers would be with this much more stiffness [N/m] at a point between eight nodes. Then comes count().
   void stiffen(const Eigen::MatrixXf& s, const std::array<int, 8>& node, const Eigen::Matrix<double, 8, 1>& weight, const Mat3& stiffness) noexcept;
   /// The last n pairs up to column `newest` of the ring count from now on.
@@ -41,6 +42,7 @@ class WallPairs {
   Eigen::VectorXd least_;             // [J], s . y below which a pair is not used
   std::vector<int> order_;            // columns, the oldest pair first
   Eigen::VectorXf each_;              // a number for each pair
+  Eigen::MatrixXf square_;
   Eigen::VectorXd alpha_, gamma_;
   Eigen::Matrix3Xf moved_, pulled_;   // of stiffen(): a column for each pair
 };

@@ -13,7 +13,7 @@ struct WallPoint {
   Vec3 local = Vec3::Zero();  // xi around, eta along, zeta outward, each in [-1, 1]
 };
 
-/// What the last steps taught about the tissue's stiffness: moves s and the changes y of the elements' gradient that they made, of all numbers.
+/// What the last steps taught about the tissue's stiffness: moves s and the changes y of the gradient of elements and inertia that they made, of all numbers.
 /// The solver begins with them, so that they are part of the state.
 struct WallHistory {
   int n = 0, newest = -1;

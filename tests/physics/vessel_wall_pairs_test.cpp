@@ -72,6 +72,23 @@ TEST(VesselWallPairs, SameAsTheTwoLoopsWhenTheRingHasGoneRound) {
   }
 }
 
+TEST(VesselWallPairs, AllAtOnceIsAsOneByOne) {
+  Case c;
+  Eigen::MatrixXf answers = Eigen::MatrixXf::Zero(c.n, c.most);
+  for (int k = 0; k < 4; ++k) {
+    c.add(k, c.random());
+    answers.col(k) = c.pairs.answer(k);
+  }
+  c.pairs.count(4, 3);
+  const Eigen::VectorXd r = c.random(), expected = c.direction(r);
+  WallPairs other(c.n, c.most);
+  other.note_all(c.s, answers);
+  other.count(4, 3);
+  c.pairs = other;
+  EXPECT_LT((c.direction(r) - expected).norm(), 1e-5 * expected.norm());
+  EXPECT_GT((c.P.llt().solve(r) - expected).norm(), 1e-2 * expected.norm());
+}
+
 TEST(VesselWallPairs, AnswerOfTheNewestPairGivesItsMove) {
   Case c;  // the secant equation
   for (int k = 0; k < 4; ++k) c.add(k, c.random());
