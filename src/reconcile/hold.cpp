@@ -177,6 +177,22 @@ Fit without_lines(const Dataset& d, const Fit& base, const std::vector<Found>& f
   return out;
 }
 
+/// Hum at 50 or 60 Hz. Sampled at nearly that rate it is folded to where heart and breath are: then it must stand in what they leave, or it is the skirt of theirs.
+void add_hum(const Fitter& fitter, const Fit& base, const Form& form, const std::vector<Spectrum>& all, std::vector<Found>& found) {
+  std::vector<Found> both;
+  const auto look = [&](const Fit& in) {
+    both.clear();
+    for (const double f : {50.0, 60.0}) add_line(fitter, in, form, f - 0.2, f + 0.2, all, both);
+    std::stable_sort(both.begin(), both.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
+  };
+  look(base);
+  std::vector<Found> stronger;
+  for (const Found& f : found)
+    if (!both.empty() && f.evidence > both[0].evidence && std::abs(std::abs(std::remainder(both[0].frequency, all[0].rate)) - f.frequency) < 8.0 * all[0].step) stronger.push_back(f);
+  if (!stronger.empty()) look(without_lines(fitter.model().data(), base, stronger));
+  if (!both.empty()) found.push_back(both[0]);
+}
+
 /// Power beside what was named, in octaves: what nobody explains.
 Band leftover(const std::vector<Spectrum>& all, const std::vector<Found>& found) {
   Band worst;
@@ -216,35 +232,72 @@ Gap gap_in(const std::vector<Spectrum>& all, const std::vector<Found>& found) {
   return n > 0 ? Gap{std::sqrt(before / n), std::sqrt(after / n)} : Gap{};
 }
 
-/// Amplitude of a line by least squares at its own frequency, mean over records and outputs with weight; near half the sampling rate
-/// one of sine and cosine is hardly seen, and the weight says so.
-Estimate line_amplitude(const Dataset& d, const Fit& base, const Noise& noise, double frequency) {
+/// What a sine of this frequency takes off chi-squared beside the slow polynomial, and its amplitude: mean over records and outputs with weight; folded
+/// to nearly nothing, or near half the sampling rate, it is hardly seen, and the weight says so.
+struct LineFit {
+  double gain = 0.0, amplitude = 0.0, half = INFINITY;  // half: of the interval [m]
+};
+LineFit line_fit(const Dataset& d, const Fit& base, const Noise& noise, double frequency) {
+  LineFit out;
   double sum = 0.0, weight = 0.0, spread = 0.0;
   std::vector<std::pair<double, double>> all;
   for (std::size_t i = 0; i < base.residual.size(); ++i)
     for (std::size_t c = 0; c < base.residual[i].size(); ++c) {
-      Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-      Eigen::Vector2d b = Eigen::Vector2d::Zero();
-      for (Eigen::Index n = 0; n < base.residual[i][c].size(); ++n) {
-        if (!std::isfinite(base.residual[i][c][n])) continue;
-        const double phase = 6.283185307179586 * frequency * (d.trials[i].time[n] - d.trials[i].time[0]);
-        const Eigen::Vector2d v(std::cos(phase), std::sin(phase));
-        A += v * v.transpose();
-        b += v * base.residual[i][c][n];
+      Eigen::Matrix<double, 6, 6> N = Eigen::Matrix<double, 6, 6>::Zero();
+      Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero(), v;
+      const Eigen::VectorXd &r = base.residual[i][c], &time = d.trials[i].time;
+      for (Eigen::Index n = 0; n < r.size(); ++n) {
+        if (!std::isfinite(r[n])) continue;
+        const double since = time[n] - time[0], phase = 6.283185307179586 * frequency * since, u = 2.0 * since / (time[time.size() - 1] - time[0]) - 1.0;
+        v << std::cos(phase), std::sin(phase), 1.0, u, 1.5 * u * u - 0.5, (2.5 * u * u - 1.5) * u;
+        N += v * v.transpose();
+        right += v * r[n];
       }
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(A);
-      const double least = eigen.eigenvalues()[0];
-      if (least <= 1e-6 * A.trace()) continue;
-      const double w = least / std::pow(noise.output[c].sigma, 2), a = A.ldlt().solve(b).norm();
-      all.emplace_back(a, w);
-      sum += w * a;
-      weight += w;
+      const Eigen::Matrix<double, 4, 2> slow = N.bottomRightCorner<4, 4>().ldlt().solve(N.bottomLeftCorner<4, 2>());
+      const Eigen::Matrix2d A = N.topLeftCorner<2, 2>() - N.topRightCorner<2, 4>() * slow;
+      const Eigen::Vector2d b = right.head<2>() - slow.transpose() * right.tail<4>();
+      const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(A).eigenvalues()[0], variance = std::pow(noise.output[c].sigma, 2);
+      if (!(least > 1e-6 * N.trace())) continue;
+      const Eigen::Vector2d x = A.ldlt().solve(b);
+      out.gain += x.dot(b) / variance;
+      all.emplace_back(x.norm(), least / variance);
+      sum += all.back().first * all.back().second;
+      weight += all.back().second;
     }
-  if (weight <= 0.0) return {"amplitude", "m", 0.0, 0.0, INFINITY};
-  const double mean = sum / weight;
-  for (const auto& [a, w] : all) spread += w * (a - mean) * (a - mean) / weight;
-  const double half = 1.4 * 1.96 * std::sqrt(1.0 / weight + spread / static_cast<double>(all.size())) + 0.02 * mean;
-  return {"amplitude", "m", mean, std::max(0.0, mean - half), mean + half};
+  if (weight <= 0.0) return out;
+  out.amplitude = sum / weight;
+  for (const auto& [a, w] : all) spread += w * (a - out.amplitude) * (a - out.amplitude) / weight;
+  out.half = 1.4 * 1.96 * std::sqrt(1.0 / weight + spread / static_cast<double>(all.size())) + 0.02 * out.amplitude;
+  return out;
+}
+
+/// Amplitude at the frequency that takes most off; the interval holds those of all frequencies that do nearly as well. `frequency` was found on a grid of
+/// 0.3/span, between whose points a sine loses up to 4 % of its amplitude (sin x/x), and is brought to the best; folded to a few cycles a record it is sought wider.
+Estimate line_amplitude(const Dataset& d, const Fit& base, const Noise& noise, double& frequency) {
+  double span = 1e-300, rate = 1.0;
+  for (const Trial& t : d.trials) span = std::max(span, t.time[t.samples() - 1] - t.time[0]), rate = (t.samples() - 1) / (t.time[t.samples() - 1] - t.time[0]);
+  const double folded = std::abs(std::remainder(frequency, 0.5 * rate)) * span;  // from nothing or half the rate [1/span]
+  const double step = folded < 5.0 ? 0.05 : 0.02;
+  const int reach = folded < 5.0 ? 60 : 20;
+  std::vector<std::pair<double, LineFit>> near;
+  for (int k = -reach; k <= reach; ++k) near.emplace_back(frequency + step * k / span, line_fit(d, base, noise, frequency + step * k / span));
+  const auto best = std::max_element(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.second.gain < b.second.gain; });
+  const LineFit& top = best->second;
+  if (!std::isfinite(top.half)) return {"amplitude", "m", 0.0, 0.0, INFINITY};
+  Estimate e{"amplitude", "m", top.amplitude, top.amplitude - top.half, top.amplitude + top.half};
+  for (const auto& [f, fit] : near)
+    if (fit.gain > top.gain - 3.84 && std::isfinite(fit.half)) e.low = std::min(e.low, fit.amplitude - fit.half), e.high = std::max(e.high, fit.amplitude + fit.half);
+  e.low = std::max(0.0, e.low);
+  frequency = best->first;
+  return e;
+}
+
+/// Squared rms [m2] of tremor: all power from 2 to 20 Hz above the white noise beyond. Tremor is mechanical resonance driven by muscle noise (Lakie et al.,
+/// J. Physiol. 593:4411, 2015), whose skirts reach far beyond the band that shows it, below the peak as far as rest.
+double tremor_power(const std::vector<Spectrum>& all, const Band& t) {
+  const double top = all[0].frequency.back();
+  if (top < 26.0) return squared_rms(all, t.low - 1.5, t.high + 1.5, t.background);
+  return squared_rms(all, 2.0, 20.0, level(all, 20.0, top));
 }
 
 NamedEffect named(const Found& f, const Estimate& line) {
@@ -325,30 +378,28 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   std::vector<Found> found;
   const bool fast = all[0].frequency.back() > 12.0;
   const Band t = tremor_band(all);
-  for (const Form& f : r.forms) {
-    if (!f.line) continue;
-    if (f.effect == Effect::mains_hum) {
-      std::vector<Found> both;
-      add_line(fitter, fitted, f, 49.8, 50.2, all, both);
-      add_line(fitter, fitted, f, 59.8, 60.2, all, both);
-      std::stable_sort(both.begin(), both.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
-      if (!both.empty()) found.push_back(both[0]);
-    } else {
-      add_line(fitter, fitted, f, f.params[0].low, f.params[0].high, all, found);
-    }
-  }
+  for (const Form& f : r.forms)
+    if (f.line && f.effect != Effect::mains_hum) add_line(fitter, fitted, f, f.params[0].low, f.params[0].high, all, found);
+  for (const Form& f : r.forms)
+    if (f.effect == Effect::mains_hum) add_hum(fitter, fitted, f, all, found);
   // heart and breath are one effect: the stronger gives the numbers
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
   const bool alias = std::any_of(found.begin(), found.end(), [&](const Found& f) { return f.effect == Effect::mains_hum && f.low < t.high && f.high > t.low; });
   if (fast && !alias && t.evidence > 25.0 && t.mean > 1.15 * t.background && t.top_share < 0.8 && t.centre > 7.6 && t.centre < 12.4)
-    found.push_back({Effect::physiological_tremor, nullptr, t.low - 0.6, t.high + 0.6, closing_frequency(all, t), squared_rms(all, t.low - 1.5, t.high + 1.5, t.background), t.evidence, t.bins});
+    found.push_back({Effect::physiological_tremor, nullptr, t.low - 0.6, t.high + 0.6, closing_frequency(all, t), tremor_power(spectra(model, without_lines(d, fitted, found), stated, false), t), t.evidence, t.bins});
   for (std::size_t c = 0; c < d.outputs.size(); ++c)
     for (const Trial& trial : d.trials)
       if (clipped(trial.at(d.outputs[c])) && r.effects.empty())
         r.effects.push_back({Effect::saturation, "clipped", {{"limit", "m", trial.at(d.outputs[c]).maxCoeff(), trial.at(d.outputs[c]).maxCoeff(), trial.at(d.outputs[c]).maxCoeff()}}});
-  for (const Found& f : found) {
+  for (Found& f : found) {
     Tried tried{{f.effect}, "", -f.evidence, 1.0, true, "taken"};
-    if (std::none_of(r.effects.begin(), r.effects.end(), [&](const NamedEffect& e) { return e.effect == f.effect; })) r.effects.push_back(named(f, line_amplitude(d, base, noise, f.frequency)));
+    if (std::none_of(r.effects.begin(), r.effects.end(), [&](const NamedEffect& e) { return e.effect == f.effect; })) {
+      std::vector<Found> others;
+      for (const Found& o : found)
+        if (o.effect != f.effect) others.push_back(o);
+      const Estimate line = f.form == nullptr ? Estimate{} : line_amplitude(d, without_lines(d, base, others), noise, f.frequency);
+      r.effects.push_back(named(f, line));
+    }
     r.tried.push_back(tried);
   }
   if (t.evidence > 4.0 && std::none_of(found.begin(), found.end(), [](const Found& f) { return f.effect == Effect::physiological_tremor; }))

@@ -3,6 +3,7 @@
 //   linear      F = E K e (shear: E/(2(1+nu)) K e), K = A (contract: small-strain stiffness E A / h)
 //   Ogden       P = 2E/(3 alpha) (l^(alpha-1) - l^(-alpha/2-1))                 (Ogden 1972; Budday et al. 2017)
 //   stiffening  P = 2 (l - l^-2)(c10 + 2 c20 (I1-3)), c10 = E/6                 (Yeoh 1993); also E e exp(2 r (I1-3)) (Demiray 1972)
+//               under a blade E* e (1 + 2 r (I1-3)) or exp, I1 of the stretch 1 - depth/height
 //   softening   factor 1 - d (1 - exp(-(Wmax - W)/W0)); also erf (Ogden & Roxburgh 1999) and x/(1 + x), x = (Wmax - W)/W0
 //   platen      1 + mu S/3, (e^(mu S) - 1)/(mu S), 1 + mu S^2, S = width/height
 // The blade: e = depth/height, K = E* stiffness of a rectangular punch on a bonded layer, F = depth (2 sqrt(A/pi) + A/h)/(1-nu^2) E.
@@ -18,7 +19,7 @@
 namespace filum::reconcile {
 namespace {
 
-enum class Mode { compression, tension, shear, press };
+enum class Mode { compression, tension, shear, press, press_small };  // press_small: small strains, as physics/tissue_law has them
 
 struct Geometry {
   Mode mode;
@@ -47,10 +48,10 @@ Geometry geometry_of(const Dataset& d, const Trial& t) {
   return g;
 }
 
-/// First invariant minus 3 of uniaxial stretch or simple shear.
+/// First invariant minus 3 of uniaxial stretch or simple shear; a press counts depth/height positive, its stretch is 1 - depth/height.
 double invariant(double e, Mode mode) {
   if (mode == Mode::shear) return e * e;
-  const double l = std::max(1.0 + e, 0.05);
+  const double l = std::max(mode == Mode::press ? 1.0 - e : 1.0 + e, 0.05);
   return l * l + 2.0 / l - 3.0;
 }
 
@@ -64,14 +65,15 @@ double ogden(double e, double alpha, Mode mode) {
   return 2.0 / (3.0 * alpha) * (std::pow(l, alpha - 1.0) - std::pow(l, -0.5 * alpha - 1.0));
 }
 
-/// The difference of the stiffening law from the linear one, over the modulus. `press` uses depth/height with the sign of compression.
+/// The difference of the stiffening law from the linear one, over the modulus.
 double stiffening(double e, double r, int kind, Mode mode) {
-  const double i1 = mode == Mode::press ? 3.0 * e * e : invariant(e, mode);
+  const double i1 = mode == Mode::press_small ? 3.0 * e * e : invariant(e, mode);
   const double l = std::max(1.0 + e, 0.05);
   const bool shear = mode == Mode::shear;
-  const double neo = shear || mode == Mode::press ? e : (l - 1.0 / (l * l)) / 3.0;
+  const bool pressed = mode == Mode::press || mode == Mode::press_small;  // a blade's linear law is the tissue's: what stiffens is its secant, as in the elements
+  const double neo = shear || pressed ? e : (l - 1.0 / (l * l)) / 3.0;
   switch (kind) {
-    case 0: return shear ? 2.0 * r * e * e * e : mode == Mode::press ? 6.0 * r * e * e * e : 2.0 * r * neo * i1;
+    case 0: return shear ? 2.0 * r * e * e * e : 2.0 * r * neo * i1;
     case 1: return neo * (1.0 + 2.0 * r * i1) - e;
     case 4: return 2.0 * r * e * i1;
     case 2: return e * std::expm1(std::min(2.0 * r * i1, 50.0));
@@ -184,7 +186,9 @@ double Tissue::chain(double e, double most, double top, const Geometry& g, const
 double Tissue::press_law(const Trial& t, const Setting& s, double strain, double most) const {
   const double* set = s.on(Effect::permanent_set);
   const double held = most - (set == nullptr ? 0.0 : set[0] * (s.form(Effect::permanent_set) == 0 ? most : most * most / largest_));
-  return chain(strain, most, 0.5 * held * held, geometry_of(data(), t), s);
+  Geometry g = geometry_of(data(), t);
+  g.mode = Mode::press_small;
+  return chain(strain, most, 0.5 * held * held, g, s);
 }
 
 void Tissue::elastic_history(const Trial& t, const Geometry& g, const Setting& s, Eigen::VectorXd& f) const {

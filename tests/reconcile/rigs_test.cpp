@@ -105,6 +105,29 @@ TEST(Rigs, OgdenOfAlphaTwoIsNeoHookean) {
   EXPECT_NEAR(out(10, 0), 300.0 * (1.2 - 1.0 / 1.44) * 1e-4, 1e-12);
 }
 
+/// Under a blade the secant grows by 2 r (I1 - 3) of the stretch 1 - depth/height, a finite one.
+TEST(Rigs, ABladeStiffensByTheFirstInvariantOfItsStretch) {
+  Dataset d = dataset(Rig::spatula_press, {"force"});
+  Trial t = trial(3, 2.0);
+  t.specimen = {{"length", 60e-3}, {"width", 50e-3}, {"height", 20e-3}, {"blade_length", 10e-3}, {"blade_width", 5e-3}};
+  t.data["depth"] = Eigen::VectorXd::LinSpaced(3, 0.0, 0.25 * 20e-3);
+  t.data["force"] = Eigen::VectorXd::Ones(3);
+  d.trials.push_back(t);
+  const auto model = make_model(d);
+  const std::vector<double> base = {1000.0, 0.45};
+  const double r = 2.0, i1 = 0.75 * 0.75 + 2.0 / 0.75 - 3.0;
+  for (const auto& [kind, stiffer] : std::vector<std::pair<int, double>>{{0, 1.0 + 2.0 * r * i1}, {2, std::exp(2.0 * r * i1)}}) {
+    Setting s;
+    s.base = base.data();
+    Eigen::MatrixXd plain, out;
+    model->simulate(d.trials[0], s, plain);
+    s.p[static_cast<std::size_t>(index_of(Effect::strain_stiffening))] = &r;
+    s.kind[static_cast<std::size_t>(index_of(Effect::strain_stiffening))] = kind;
+    model->simulate(d.trials[0], s, out);
+    EXPECT_NEAR(out(2, 0) / plain(2, 0) / stiffer, 1.0, 1e-12);
+  }
+}
+
 TEST(Rigs, DrainageIsKnownByTheSizeThatVaries) {
   const auto unknown = [](const std::vector<std::array<double, 2>>& sizes, const char* mode) {  // forms of drainage that one size leaves open
     Dataset d = dataset(Rig::tissue_block, {"force"});

@@ -1,0 +1,99 @@
+// A still hand: what tremor, hum and pulse put into a record comes back with its size, and breath is not taken for hum folded by the sampling.
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "base/rng.h"
+#include "records.h"
+#include "reconcile/report.h"
+
+namespace filum::reconcile {
+namespace {
+
+/// Four records of 25 s in um with 4 um of white noise; `signal` gives what is added to (time, random).
+Result held(double rate, std::uint64_t seed, const std::function<std::function<double(double)>(Rng&)>& signal) {
+  Folder f;
+  std::string trials;
+  Rng rng(seed);
+  for (const char* name : {"a.csv", "b.csv", "c.csv", "d.csv"}) {
+    trials += std::string("  - { file: ") + name + ", protocol: { support: free } }\n";
+    const auto add = signal(rng);
+    std::ostringstream s;
+    s << "t,x\n";
+    for (int i = 0; i < static_cast<int>(25.0 * rate); ++i) {
+      const double t = i / rate, u = t / 25.0;
+      s << t << "," << 40.0 * u - 25.0 * u * u * u + 4.0 * rng.normal() + add(t) << "\n";
+    }
+    f.write(name, s.str());
+  }
+  f.write("experiment.yaml", "format: filum-experiment/1\ntitle: hand\nsource: test\nrig: tip-hold\nspecimen: { sensor: optical }\nmodel:\n  file: hand/still\n  free: []\n"
+                             "channels:\n  - { name: time, column: t, unit: s }\n  - { name: x, column: x, unit: um, kind: output, noise: \"4 um\" }\ntrials:\n" + trials);
+  return reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
+}
+
+const Estimate& value(const Result& r, const std::string& name) {
+  for (const Estimate& e : r.effects.at(0).parameters)
+    if (e.name == name) return e;
+  throw std::runtime_error(name);
+}
+
+std::function<double(double)> sine(Rng& rng, double frequency, double amplitude) {
+  const double phase = 2.0 * std::numbers::pi * rng.uniform();
+  return [=](double t) { return amplitude * std::sin(2.0 * std::numbers::pi * frequency * t + phase); };
+}
+
+/// A resonance of 9.5 Hz, damping 0.05, kicked by noise: its skirts hold a tenth of its power beyond +-2 Hz.
+TEST(Hold, TremorHasAllItsPower) {
+  const Result r = held(100.0, 3, [](Rng& rng) {
+    double s = 0.0, ds = 0.0, square = 0.0;
+    std::vector<double> record;
+    for (int i = 0; i < 20 * 2500; ++i) {
+      const double h = 5e-4, w = 2.0 * std::numbers::pi * 9.5;
+      ds += h * (-w * w * s - 0.1 * w * ds) + std::sqrt(h) * rng.normal();
+      s += h * ds;
+      if (i % 20 == 0) record.push_back(s), square += s * s;
+    }
+    const double scale = 12.0 / std::sqrt(square / static_cast<double>(record.size()));
+    return [record, scale](double t) { return scale * record.at(static_cast<std::size_t>(std::lround(100.0 * t))); };
+  });
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  EXPECT_EQ(r.effects[0].effect, Effect::physiological_tremor);
+  EXPECT_NEAR(value(r, "frequency").value, 9.5, 0.3);
+  EXPECT_NEAR(value(r, "rms").value / 12e-6, 1.0, 0.03);
+}
+
+/// Between the frequencies of a grid of 0.3 cycles a record a sine would lose 1 - sin(x)/x.
+TEST(Hold, APulseHasItsAmplitude) {
+  for (const double f : {1.2, 1.206}) {
+    const Result r = held(100.0, 4, [f](Rng& rng) { return sine(rng, f, 10.0); });
+    ASSERT_EQ(r.verdict, "effect") << r.sentence;
+    EXPECT_EQ(r.effects[0].effect, Effect::pulsation);
+    EXPECT_NEAR(value(r, "amplitude").value / 10e-6, 1.0, 0.015);
+    EXPECT_NEAR(value(r, "frequency").value, f, 0.001);
+  }
+}
+
+/// Sampled 60 times a second 60.05 Hz goes round 1.25 times in a record, of which the slow drift takes a part.
+TEST(Hold, HumFoldedToACycleOfTheRecordHasItsAmplitude) {
+  const Result r = held(60.0, 5, [](Rng& rng) { return sine(rng, 60.05, 12.0); });
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  EXPECT_EQ(r.effects[0].effect, Effect::mains_hum);
+  const Estimate& a = value(r, "amplitude");
+  EXPECT_NEAR(a.value / 12e-6, 1.0, 0.06);
+  EXPECT_LT(a.low, 12e-6);
+  EXPECT_GT(a.high, 12e-6);
+}
+
+TEST(Hold, BreathIsNotHumFoldedByTheSampling) {
+  const Result r = held(60.0, 6, [](Rng& rng) {
+    const auto heart = sine(rng, 1.56, 11.0), breath = sine(rng, 0.235, 8.0);
+    return [=](double t) { return heart(t) + breath(t); };
+  });
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  ASSERT_EQ(r.effects.size(), 1u);
+  EXPECT_EQ(r.effects[0].effect, Effect::pulsation);
+}
+
+}  // namespace
+}  // namespace filum::reconcile
