@@ -222,6 +222,7 @@ class TubeSolver final : public FullSolver {
     if (const double* p = take(Effect::smooth_muscle_tone, 2))
       law.tone = {s.form(Effect::smooth_muscle_tone) == 0 ? MuscleTone::Shape::parabola : MuscleTone::Shape::bell, p[0], p[1]};
     if (const double* p = take(Effect::residual_stress, 1)) opening = p[0];
+    if (const double* p = s.on(Effect::first_cycle_softening)) key.insert(key.end(), {-1.0 - s.form(Effect::first_cycle_softening), p[0], p[1]});
     return law;
   }
 
@@ -261,7 +262,12 @@ class TubeSolver final : public FullSolver {
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
     const int around = fine ? 32 : 16;
-    return known_.emplace(std::move(key), tube_table(w, law, opening, stretches(), widest(w), [&](double C, double lz) { return model_.wall_pressure(t, own, C, lz); }, around)).first->second;
+    WallTable made = tube_table(w, law, opening, stretches(), widest(w), [&](double C, double lz) { return model_.wall_pressure(t, own, C, lz); }, around);
+    if (const double* p = s.on(Effect::first_cycle_softening)) {
+      made.softened = tube_softening(w, {static_cast<WallSoftening::Shape>(s.form(Effect::first_cycle_softening)), p[0], p[1]}, widest(w), around);
+      if (made.softened.top.empty()) made.linear = NAN;
+    }
+    return known_.emplace(std::move(key), std::move(made)).first->second;
   }
 
   const RigModel& model_;

@@ -62,8 +62,8 @@ class Vessel final : public RigModel {
     double operator()(double C) const;
   };
   Table tabulate(double lz, double least, double most, const Wall& w, const Setting& s) const;
-  template <class Extra>
-  double solve(double P, double start, double softened, const Wall& w, const Extra& extra) const;
+  template <class Left, class Extra>
+  double solve(double P, double start, const Left& left, const Wall& w, const Extra& extra) const;
 
   double largest_ = 1e-9, strain_ = 1e-3, a_ = 1.0, b_ = 1.0, span_ = 1.0;
 };
@@ -141,10 +141,10 @@ Vessel::Table Vessel::tabulate(double lz, double least, double most, const Wall&
   return t;
 }
 
-/// C that bears the pressure P; monotone, so Newton steps guarded by bisection.
-template <class Extra>
-double Vessel::solve(double P, double start, double softened, const Wall& w, const Extra& extra) const {
-  const auto miss = [&](double C) { return softened * (2.0 * w.mu * C * w.lame + extra(C)) - P; };
+/// C that bears the pressure P; monotone (what has softened comes back firmer as the energy rises), so Newton steps guarded by bisection.
+template <class Left, class Extra>
+double Vessel::solve(double P, double start, const Left& left, const Wall& w, const Extra& extra) const {
+  const auto miss = [&](double C) { return left(C) * (2.0 * w.mu * C * w.lame + extra(C)) - P; };
   double low = -0.49 * w.a * w.a, high = 40.0 * w.a * w.a, C = start;
   for (int i = 0; i < 60; ++i) {
     const double f = miss(C);
@@ -191,14 +191,14 @@ void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
     if (plain) {
       C = P[n] / (2.0 * w.mu * w.lame);
     } else {
-      double softened = 1.0;
-      if (soft != nullptr) {  // energy over the modulus, of the state of the step before
-        const double e = C / (w.a * w.b), energy = 0.5 * e * e;
-        top = std::max(top, energy);
-        softened = 1.0 - soft[0] * softening_share((top - energy) / soft[1], s.form(Effect::first_cycle_softening));
-        if (s.wall != nullptr) softened += s.wall->softened.at(C, w.a * w.b * std::sqrt(2.0 * top));
-      }
-      C = steady ? solve(P[n], C, softened, w, table) : solve(P[n], C, softened, w, [&](double c) { return extra(c, lz, w, s); });
+      const auto left = [&](double c) {  // share of the stress, by the energy over the modulus that this motion has and the most so far
+        if (soft == nullptr) return 1.0;
+        const double e = c / (w.a * w.b), energy = 0.5 * e * e, most = std::max(top, energy);
+        return 1.0 - soft[0] * softening_share((most - energy) / soft[1], s.form(Effect::first_cycle_softening)) +
+               (s.wall != nullptr ? s.wall->softened.at(c, w.a * w.b * std::sqrt(2.0 * most)) : 0.0);
+      };
+      C = steady ? solve(P[n], C, left, w, table) : solve(P[n], C, left, w, [&](double c) { return extra(c, lz, w, s); });
+      top = std::max(top, 0.5 * std::pow(C / (w.a * w.b), 2));
     }
     for (std::size_t c = 0; c < data().outputs.size(); ++c) {
       double& y = out(n, static_cast<Eigen::Index>(c));

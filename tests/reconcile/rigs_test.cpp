@@ -128,6 +128,31 @@ TEST(Rigs, ABladeStiffensByTheFirstInvariantOfItsStretch) {
   }
 }
 
+/// On the way back each state bears its own pressure with its own share of softening, however far apart the samples are.
+TEST(Rigs, AVesselThatHasSoftenedBearsItsPressureInEverySample) {
+  Dataset d = dataset(Rig::vessel_inflation, {"outer_diameter"});
+  Trial t = trial(9, 8.0);
+  t.specimen = {{"outer_diameter", 2e-3}, {"wall_thickness", 0.3e-3}};
+  t.data["pressure"].resize(9);
+  t.data["pressure"] << 0.0, 4e3, 8e3, 12e3, 9e3, 6e3, 3e3, 9e3, 13e3;
+  t.data["outer_diameter"] = Eigen::VectorXd::Constant(9, 2e-3);
+  d.trials.push_back(t);
+  const auto model = make_model(d);
+  const std::vector<double> base = {3e5};
+  const double a = 0.7e-3, b = 1e-3, soft[] = {0.4, 2e-4}, firm = 2.0 * 1e5 * (1.0 / (a * a) - 1.0 / (b * b));
+  Setting s;
+  s.base = base.data();
+  s.p[static_cast<std::size_t>(index_of(Effect::first_cycle_softening))] = soft;
+  Eigen::MatrixXd out;
+  model->simulate(d.trials[0], s, out);
+  double top = 0.0;
+  for (int n = 0; n < 9; ++n) {
+    const double C = 0.5 * b * (out(n, 0) - 2.0 * b), W = 0.5 * std::pow(C / (a * b), 2);
+    top = std::max(top, W);
+    EXPECT_NEAR(firm * C * (1.0 - soft[0] * (1.0 - std::exp(-(top - W) / soft[1]))), t.data["pressure"][n], 1e-3) << n;
+  }
+}
+
 TEST(Rigs, DrainageIsKnownByTheSizeThatVaries) {
   const auto unknown = [](const std::vector<std::array<double, 2>>& sizes, const char* mode) {  // forms of drainage that one size leaves open
     Dataset d = dataset(Rig::tissue_block, {"force"});
