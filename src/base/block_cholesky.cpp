@@ -32,6 +32,16 @@ bool invert_factor(Mat4& a) noexcept {
   return true;
 }
 
+/// The first bit set from `from` on, round about; -1 if none is.
+int next_bit(const std::uint64_t* row, int words, int from) noexcept {
+  for (int k = 0, w = from / 64; k <= words; ++k, w = w + 1 < words ? w + 1 : 0) {
+    std::uint64_t bits = row[w];
+    if (k == 0) bits &= ~std::uint64_t{0} << (from % 64);
+    if (bits != 0) return w * 64 + std::countr_zero(bits);
+  }
+  return -1;
+}
+
 }  // namespace
 
 BlockCholesky::BlockCholesky(int max_nodes) {
@@ -42,6 +52,7 @@ BlockCholesky::BlockCholesky(int max_nodes) {
   order_.reserve(n);
   position_.reserve(n);
   degree_.reserve(n);
+  of_degree_.reserve(n * words);
   column_start_.reserve(n + 1);
   row_.reserve(n * kReservePerNode);
   update_.reserve(n * kReservePerNode * 8);
@@ -68,43 +79,45 @@ void BlockCholesky::analyse() noexcept {
   lower_.resize(row_.size());
 }
 
-// Minimum degree: eliminate the node with the fewest neighbours, join its neighbours to each other, repeat. Chain nodes
-// (the great majority) have the least possible degree, so a scan that restarts near the last pick finds one at once.
+// Minimum degree: eliminate the node with the fewest neighbours, join its neighbours to each other, repeat. Of several
+// such nodes the next one along the chain goes first. Nodes of each degree are kept as bit rows, so that it is found at once.
 void BlockCholesky::order() noexcept {
   fill_ = graph_;
   order_.clear();
   position_.assign(static_cast<std::size_t>(n_), -1);
   degree_.assign(static_cast<std::size_t>(n_), 0);
-  auto count = [&](int i) {
-    int d = 0;
-    for (int w = 0; w < words_; ++w) d += std::popcount(fill_[static_cast<std::size_t>(i) * words_ + w]);
-    return d;
+  of_degree_.assign(static_cast<std::size_t>(n_) * words_, 0);
+  const auto row = [&](std::vector<std::uint64_t>& rows, int i) { return &rows[static_cast<std::size_t>(i) * words_]; };
+  const auto bit = [](int i) { return std::uint64_t{1} << (i % 64); };
+  const auto place = [&](int i) {
+    const std::uint64_t* neighbours = row(fill_, i);
+    degree_[i] = 0;
+    for (int w = 0; w < words_; ++w) degree_[i] += std::popcount(neighbours[w]);
+    row(of_degree_, degree_[i])[i / 64] |= bit(i);
   };
-  for (int i = 0; i < n_; ++i) degree_[i] = count(i);
-  int scan = 0;
-  int floor = 0;  // no remaining node has a degree below this
-  while (static_cast<int>(order_.size()) < n_) {
-    int best = -1;
-    for (int k = 0, i = scan; k < n_; ++k, i = i + 1 < n_ ? i + 1 : 0) {
-      if (position_[i] >= 0) continue;
-      if (best < 0 || degree_[i] < degree_[best]) best = i;
-      if (degree_[best] <= floor) break;
-    }
-    floor = std::max(0, degree_[best] - 1);
-    scan = best;
+  const auto displace = [&](int i) { row(of_degree_, degree_[i])[i / 64] &= ~bit(i); };
+  for (int i = 0; i < n_; ++i) place(i);
+  int least = 0;  // no remaining node has a degree below this
+  for (int best = 0; static_cast<int>(order_.size()) < n_;) {
+    int next = -1;
+    for (; (next = next_bit(row(of_degree_, least), words_, best)) < 0; ++least) {}
+    best = next;
+    displace(best);
     position_[best] = static_cast<int>(order_.size());
     order_.push_back(best);
-    const std::uint64_t* row = &fill_[static_cast<std::size_t>(best) * words_];
+    const std::uint64_t* gone = row(fill_, best);
     for (int w = 0; w < words_; ++w) {
-      for (std::uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
+      for (std::uint64_t bits = gone[w]; bits != 0; bits &= bits - 1) {
         const int j = w * 64 + std::countr_zero(bits);
-        std::uint64_t* other = &fill_[static_cast<std::size_t>(j) * words_];
-        for (int u = 0; u < words_; ++u) other[u] |= row[u];
-        other[j / 64] &= ~(std::uint64_t{1} << (j % 64));
-        other[best / 64] &= ~(std::uint64_t{1} << (best % 64));
-        degree_[j] = count(j);
+        std::uint64_t* other = row(fill_, j);
+        for (int u = 0; u < words_; ++u) other[u] |= gone[u];
+        other[j / 64] &= ~bit(j);
+        other[best / 64] &= ~bit(best);
+        displace(j);
+        place(j);
       }
     }
+    least = std::max(0, least - 1);
   }
 }
 

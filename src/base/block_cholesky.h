@@ -69,6 +69,7 @@ class BlockCholesky {
   std::vector<int> order_;             // order_[k] = node eliminated k-th
   std::vector<int> position_;          // inverse of order_
   std::vector<int> degree_;
+  std::vector<std::uint64_t> of_degree_;  // n x words, the remaining nodes of each degree
   std::vector<int> column_start_;      // n + 1
   std::vector<int> row_;               // positions, ascending in each column
   std::vector<int> update_;            // target block of each (a, b), a > b, pair of each column, column by column

@@ -10,6 +10,8 @@
 namespace filum {
 namespace {
 
+constexpr int kChunk = 8;  // edges in one box of the broad phase
+
 double bar_radius(const Obstacle& o, double t) noexcept { return (1.0 - t) * o.r_a + t * o.r_b; }
 
 /// [m2], of pressed_on_bar: only the edge's point wanders, where two edges share it.
@@ -63,31 +65,47 @@ void RodObstacles::find_touches(const RodState& s, const Points& x, double radiu
   a_W_.resize(obstacles.size());
   b_W_.resize(obstacles.size());
   gone_.assign(obstacles.size(), 0.0);
+  near_.reserve(obstacles.size());
   for (std::size_t k = 0; k < obstacles.size(); ++k) place(k);
   double arc = s.arc_start;
-  for (int j = 0; j + 1 < s.n; arc += s.rest_length[j++]) {
-    const bool parted = s.alive[j] == 0;  // its first node still ends a piece that may lie on the sheet
-    const double margin = radius + reach[j] + body_reach;
-    const Vec3 low = x.col(j).cwiseMin(x.col(j + 1)), high = x.col(j).cwiseMax(x.col(j + 1));
-    for (int k = 0; k < static_cast<int>(obstacles.size()); ++k) {
-      const Obstacle& o = obstacles[k];
-      if (arc + s.rest_length[j] > o.ignore_from && arc < o.ignore_to) continue;
-      if (o.kind == Obstacle::Kind::plane) {
-        const Vec3 n = (b_W_[k] - a_W_[k]).normalized();
-        const double above = n.dot(x.col(j) - a_W_[k]), last = n.dot(x.col(j + 1) - a_W_[k]);
-        if (above < margin) collect(j, k, 0.0, above - radius);
-        if (j + 2 == s.n && last < margin) collect(j, k, 1.0, last - radius);
-        continue;
-      }
-      if (parted) continue;
-      const double thickest = std::max(o.r_a, o.r_b), near = margin + thickest;
-      if (((low - a_W_[k].cwiseMax(b_W_[k])).array() > near).any()) continue;
-      if (((a_W_[k].cwiseMin(b_W_[k]) - high).array() > near).any()) continue;
-      const SegmentPair c = closest_points(x.col(j), x.col(j + 1), a_W_[k], b_W_[k]);
-      if (c.distance < margin + bar_radius(o, c.t)) collect(j, k, c.s, c.distance - radius - thickest);
-    }
+  for (int begin = 0; begin + 1 < s.n; begin += kChunk) {
+    const int end = std::min(begin + kChunk, s.n - 1);
+    const auto nodes = x.middleCols(begin, end - begin + 1);
+    find_near_obstacles(nodes.rowwise().minCoeff(), nodes.rowwise().maxCoeff(), radius + reach.segment(begin, end - begin).maxCoeff() + body_reach);
+    for (int j = begin; j < end; arc += s.rest_length[j++])
+      for (const int k : near_)
+        if (arc + s.rest_length[j] <= obstacles[k].ignore_from || arc >= obstacles[k].ignore_to)
+          find_touch(s, x, radius, radius + reach[j] + body_reach, j, k);
   }
   keep_loads();
+}
+
+/// Those that come within `margin` [m] of the box of some nodes.
+void RodObstacles::find_near_obstacles(const Vec3& low, const Vec3& high, double margin) noexcept {
+  near_.clear();
+  for (int k = 0; k < static_cast<int>(obstacles.size()); ++k)
+    if (obstacles[k].kind == Obstacle::Kind::plane || !beyond(low, high, k, margin)) near_.push_back(k);
+}
+
+/// The box of a bar's axis is farther from that box than margin and the bar's radius.
+bool RodObstacles::beyond(const Vec3& low, const Vec3& high, int k, double margin) const noexcept {
+  const double near = margin + std::max(obstacles[k].r_a, obstacles[k].r_b);
+  return ((low - a_W_[k].cwiseMax(b_W_[k])).array() > near).any() || ((a_W_[k].cwiseMin(b_W_[k]) - high).array() > near).any();
+}
+
+void RodObstacles::find_touch(const RodState& s, const Points& x, double radius, double margin, int j, int k) noexcept {
+  const Obstacle& o = obstacles[k];
+  if (o.kind == Obstacle::Kind::plane) {
+    const Vec3 n = (b_W_[k] - a_W_[k]).normalized();
+    const double above = n.dot(x.col(j) - a_W_[k]), last = n.dot(x.col(j + 1) - a_W_[k]);
+    if (above < margin) collect(j, k, 0.0, above - radius);
+    if (j + 2 == s.n && last < margin) collect(j, k, 1.0, last - radius);
+    return;
+  }
+  if (s.alive[j] == 0) return;  // of a parted edge only the first node counts: it ends a piece that may lie on the sheet
+  if (beyond(x.col(j).cwiseMin(x.col(j + 1)), x.col(j).cwiseMax(x.col(j + 1)), k, margin)) return;
+  const SegmentPair c = closest_points(x.col(j), x.col(j + 1), a_W_[k], b_W_[k]);
+  if (c.distance < margin + bar_radius(o, c.t)) collect(j, k, c.s, c.distance - radius - std::max(o.r_a, o.r_b));
 }
 
 void RodObstacles::keep_loads() noexcept {

@@ -79,6 +79,9 @@ class RodObstacles {
     const auto k = static_cast<std::size_t>(t.obstacle);
     return obstacles[k].kind == Obstacle::Kind::plane ? 0.0 : travel.gone(t.edge) + gone_[k];  // planes are always measured
   }
+  void find_near_obstacles(const Vec3& low, const Vec3& high, double margin) noexcept;
+  bool beyond(const Vec3& low, const Vec3& high, int obstacle, double margin) const noexcept;
+  void find_touch(const RodState& s, const Points& x, double radius, double margin, int edge, int obstacle) noexcept;
   void keep_loads() noexcept;
   void collect(int edge, int obstacle, double s, double gap) noexcept;
   void place(std::size_t obstacle) noexcept;
@@ -86,6 +89,7 @@ class RodObstacles {
 
   std::vector<ObstacleTouch> touches_, known_;
   std::vector<Vec3> a_W_, b_W_;  // [m], axis ends of each obstacle at X_now
+  std::vector<int> near_;
   std::vector<double> gone_;     // [m], how far they have moved since find_touches()
 };
 
