@@ -164,20 +164,24 @@ void RodContact::connect(BlockCholesky& matrix) noexcept {
 }
 
 void RodContact::join(RodPair& p, bool touches) noexcept {
-  if (p.joined || !touches) return;
+  if (!touches || p.in_matrix()) return;
   p.joined = pattern_stale_ = true;
 }
 
 bool RodContact::find_slots(const BlockCholesky& matrix) noexcept {
+  bool all = true;
   for (RodPair& p : pairs_) {
     if (!p.joined) continue;
-    for (int k = 0; k < 4; ++k) {
+    bool there = true;
+    for (int k = 0; k < 4 && there; ++k) {
       p.slots[k] = matrix.find(p.i + k / 2, p.j + k % 2);
-      if (p.slots[k].index < 0) return false;
+      there = p.slots[k].index >= 0;
     }
+    if (!there) p.slots[0] = {};
+    all = all && (there || p.force <= 0.0);
   }
-  pattern_stale_ = false;
-  return connected_ <= 2 * n_joined() + 16;  // what left again costs fill
+  pattern_stale_ = !all;
+  return all && connected_ <= 2 * n_joined() + 16;  // what left again costs fill
 }
 
 void RodContact::recall(const std::vector<ContactBristle>& memory) noexcept {

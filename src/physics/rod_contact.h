@@ -49,11 +49,12 @@ struct RodPair {
   double measured_at = 0;             // [m], how far both edges had gone by then since the pairs were found
   double force = 0;                   // [N], normal
   double load = 0;                    // [N], normal force by which friction goes
-  bool joined = false;                // has its blocks in the matrix: near enough to touch soon
+  bool joined = false;                // gets blocks in the next pattern of the matrix: near enough to touch soon
   Vec3 xi_start = Vec3::Zero();       // [m], bristle at the start of the step
   Vec3 trial = Vec3::Zero();          // [m], bristle before return mapping
   FrictionPoint friction;
   BlockCholesky::Slot slots[4];       // blocks (i,j), (i,j+1), (i+1,j), (i+1,j+1)
+  bool in_matrix() const noexcept { return slots[0].index >= 0; }  // all four are there
 };
 
 /// The normal force that friction goes by within a step: the one at the step's start, or the present one if that is less. (Solving for both
@@ -76,19 +77,19 @@ class RodContact {
 
   /// Collects all pairs of edges, sorted, that can come within one diameter while each edge moves at most travel.reach [m], and starts the
   /// travel. Edges of the same strand closer than two diameters along it are left out. Only pairs that may touch soon are joined, that is, take
-  /// part in the matrix: most are there only to bound the move. Pairs known before keep their load of friction, others have none.
+  /// part in the matrix's pattern: most are there only to bound the move. Pairs known before keep their load of friction, others have none.
   void find_pairs(const RodState& s, const Points& x, double radius) noexcept;
   const std::vector<RodPair>& pairs() const noexcept { return pairs_; }
   /// [m], the axes are not closer than this.
   double at_least(const RodPair& p) const noexcept { return p.distance - (gone(p) - p.measured_at); }
   bool overflowed() const noexcept { return overflowed_; }
 
-  /// True if pairs have been joined since find_slots().
+  /// True if pairs were found, or touched without blocks in the matrix, since find_slots().
   bool pattern_stale() const noexcept { return pattern_stale_; }
   /// Declares the blocks of the joined pairs in the pattern.
   void connect(BlockCholesky& matrix) noexcept;
-  /// Looks up where the joined pairs' blocks are, be it among those that elimination fills. False if some are not there, or if many more are
-  /// there than are needed: then the pattern should be made anew.
+  /// Looks up where the joined pairs' blocks are, be it among those that elimination fills. False if those of a pair that touches are not there,
+  /// or if many more are there than are needed: then the pattern should be made anew. Pairs that do not touch yet can wait.
   bool find_slots(const BlockCholesky& matrix) noexcept;
 
   /// Attaches the bristles remembered from the last step to the present pairs.
