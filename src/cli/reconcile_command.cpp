@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "cli/options.h"
 #include "ranks/ranks.h"
+#include "reconcile/hardware.h"
 #include "reconcile/plugin.h"
 #include "reconcile/report.h"
 #include "reconcile/search.h"
@@ -48,6 +49,8 @@ reconcile::Result solve(const std::string& folder, const std::string& out, const
   if (progress) show_progress("done", 1.0);
   reconcile::write_report(d, r, out, program_text());
   name = d.name;
+  if (progress)
+    for (const reconcile::HardwareCheck& h : reconcile::check_units(d, r.baseline)) std::fprintf(stderr, "%s: %s\n", h.where.c_str(), h.found.c_str());
   if (progress && o.json) print_json(reconcile::report_json(d, r));
   return r;
 }

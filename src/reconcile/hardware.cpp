@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "reconcile/model.h"
+#include "reconcile/result.h"
 
 namespace filum::reconcile {
 namespace {
@@ -72,6 +73,36 @@ std::vector<HardwareCheck> check_hardware(const Dataset& d) {
   for (const Trial& t : d.trials) {
     check_clock(t, out);
     for (const std::string& name : d.outputs) check_values(t, d.channel(name), out);
+  }
+  return out;
+}
+
+std::vector<HardwareCheck> check_units(const Dataset& d, const std::vector<Estimate>& baseline) {
+  std::vector<HardwareCheck> out;
+  for (const Estimate& e : baseline) {
+    const auto own = d.nominal.find(e.name);
+    if (own == d.nominal.end() || own->second == 0.0 || e.name == "poissons_ratio" || e.name.ends_with("offset")) continue;
+    const double times = std::abs(e.value / own->second), most = e.name == "friction_coefficient" ? 8.0 : 100.0;
+    if (times > most || times < 1.0 / most)
+      out.push_back({"unit", "model", text("%s comes out as %.3g %s where the model file has %.3g: is the unit of a channel or a size wrong by 1000?", e.name.c_str(), e.value, e.unit.c_str(), own->second)});
+  }
+  const auto look = [&](const Trial& t, const char* channel, double low, double high, const char* what, auto size) {
+    if (!t.has(channel)) return;
+    std::vector<double> there;
+    for (const double v : t.at(channel))
+      if (std::isfinite(v)) there.push_back(v);
+    if (there.empty()) return;
+    const double found = size(there);
+    if (found < low || found > high) out.push_back({"unit", t.file + ", " + channel, text("%s %.3g %s, expected %.3g to %.3g: is the unit wrong by 1000?", what, found, d.channel(channel).unit.c_str(), low, high)});
+  };
+  const auto typical = [](const std::vector<double>& v) { return median(v); };
+  const auto largest = [](const std::vector<double>& v) { return std::max(std::abs(*std::min_element(v.begin(), v.end())), std::abs(*std::max_element(v.begin(), v.end()))); };
+  const auto spread = [](const std::vector<double>& v) { return *std::max_element(v.begin(), v.end()) - *std::min_element(v.begin(), v.end()); };
+  for (const Trial& t : d.trials) {
+    if (d.rig == Rig::vessel_inflation) look(t, "outer_diameter", 0.2 * t.size("outer_diameter"), 5.0 * t.size("outer_diameter"), "usually", typical);
+    if (d.rig == Rig::suture_pull || d.rig == Rig::needle_insertion) look(t, "speed", 2e-6, 1.0, "at most", largest);
+    if (d.rig == Rig::tip_hold)
+      for (const std::string& axis : d.outputs) look(t, axis.c_str(), 1e-6, 0.02, "wanders by", spread);
   }
   return out;
 }

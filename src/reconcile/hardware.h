@@ -7,11 +7,16 @@
 namespace filum::reconcile {
 
 struct HardwareCheck {
-  std::string what;   // clock, gap, frozen, quantisation, saturation
+  std::string what;   // clock, gap, frozen, quantisation, saturation, unit
   std::string where;  // trial, channel
   std::string found;
 };
 
 std::vector<HardwareCheck> check_hardware(const Dataset& d);
+
+struct Estimate;
+/// What a unit wrong by 1000 would do: fitted values a hundred times above or below those of the model file (friction eight times), diameters that are not the specimen's,
+/// speeds and hands that do not move or leap. Said, not refused: a material may be another one than the model's.
+std::vector<HardwareCheck> check_units(const Dataset& d, const std::vector<Estimate>& baseline);
 
 }  // namespace filum::reconcile

@@ -269,7 +269,9 @@ void closing(const Dataset& d, const Result& r, const std::string& program, std:
        {"with a share of the best score of", k.screen_share}})
     s << row({name, number(value)});
   s << "</table>\n";
-  if (const auto hardware = check_hardware(d); !hardware.empty()) {
+  auto hardware = check_units(d, r.baseline);
+  for (const HardwareCheck& h : check_hardware(d)) hardware.push_back(h);
+  if (!hardware.empty()) {
     s << "<h2>What the records say of the hardware</h2><table>" << row({"check", "where", "found"}, "th");
     for (const HardwareCheck& h : hardware) s << row({h.what, h.where, h.found});
     s << "</table>\n";

@@ -108,7 +108,8 @@ Json report_json(const Dataset& d, const Result& r) {
   for (const Sensitivity& v : r.numerics.sensitivities) steps[v.parameter] = {{"disagreement", finite(v.disagreement)}, {"step", v.step}};
   j["numerics"] = {{"time_halved", finite(r.numerics.time)}, {"mesh_halved", finite(r.numerics.mesh)}, {"sensitivities", steps}};
   Json hardware = Json::array();
-  for (const HardwareCheck& h : check_hardware(d)) hardware.push_back({{"check", h.what}, {"where", h.where}, {"found", h.found}});
+  for (const auto& checks : {check_hardware(d), check_units(d, r.baseline)})
+    for (const HardwareCheck& h : checks) hardware.push_back({{"check", h.what}, {"where", h.where}, {"found", h.found}});
   j["hardware"] = hardware;
   j["notices"] = d.notices;
   char hash[20];

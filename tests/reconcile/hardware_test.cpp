@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
+#include "reconcile/result.h"
 
 namespace filum::reconcile {
 namespace {
@@ -50,6 +51,48 @@ TEST(Hardware, FindsClippedTops) {
 
 TEST(Hardware, FindsFrozenSamples) {
   EXPECT_EQ(checks([](auto&, auto& y) { y.segment(100, 20).setConstant(y[100]); }), Names{"frozen"});
+}
+
+Dataset rig(Rig r, const std::string& channel, double size) {
+  Dataset d;
+  d.rig = r;
+  d.outputs = {channel};
+  d.channels = {{channel, "c", "m", 1.0, 0.0, false, 0.0}};
+  Trial t;
+  t.file = "a.csv";
+  t.time = Eigen::VectorXd::LinSpaced(20, 0.0, 1.0);
+  t.specimen = {{"outer_diameter", 1e-3}, {"wall_thickness", 1e-4}};
+  t.data[channel] = size * Eigen::VectorXd::LinSpaced(20, 0.9, 1.1);
+  d.trials.push_back(t);
+  return d;
+}
+
+/// Values and sizes as they should be, and a thousand times too large or small, of every rig.
+TEST(Hardware, NoticesAUnitThatIsWrongByAThousand) {
+  struct Value {
+    Rig rig;
+    const char* name;
+    double usual, nominal;
+  };
+  for (const Value& v : {Value{Rig::tissue_block, "youngs_modulus", 3e3, 1e3}, {Rig::spatula_press, "youngs_modulus", 6e2, 1e3}, {Rig::vessel_inflation, "youngs_modulus", 2e5, 3e5},
+                         {Rig::suture_cantilever, "youngs_modulus", 1.2e9, 2.5e9}, {Rig::suture_pull, "friction_coefficient", 0.35, 0.2}, {Rig::needle_insertion, "stiffness", 80.0, 100.0},
+                         {Rig::forceps_bridge, "pressure_gain", 900.0, 667.0}}) {
+    Dataset d;
+    d.rig = v.rig;
+    d.nominal[v.name] = v.nominal;
+    for (const double times : {1e-3, 1.0, 1e3}) {
+      const auto said = check_units(d, {{v.name, "u", times * v.usual, 0.0, 0.0}});
+      ASSERT_EQ(said.size(), times == 1.0 ? 0u : 1u) << v.name << times;
+      for (const HardwareCheck& h : said) EXPECT_NE(h.found.find("is the unit of a channel or a size wrong by 1000?"), std::string::npos) << h.found;
+    }
+  }
+  struct Size {
+    Rig rig;
+    const char* channel;
+    double usual;
+  };
+  for (const Size& v : {Size{Rig::vessel_inflation, "outer_diameter", 1.1e-3}, {Rig::suture_pull, "speed", 1e-3}, {Rig::needle_insertion, "speed", 1.5e-3}, {Rig::tip_hold, "x", 3e-4}})
+    for (const double times : {1e-3, 1.0, 1e3}) EXPECT_EQ(check_units(rig(v.rig, v.channel, times * v.usual), {}).size(), times == 1.0 ? 0u : 1u) << v.channel << times;
 }
 
 }  // namespace
