@@ -101,7 +101,7 @@ double WallTable::Softened::at(double c, double most) const {
   };
   const auto [k, u] = place(top, most);
   const auto [m, v] = place(share, std::abs(c) / most);
-  const auto line = [&](std::size_t row) { return (1.0 - v) * more[row * share.size() + m - 1] + v * more[row * share.size() + m]; };
+  const auto line = [this, column = m, v = v](std::size_t row) { return (1.0 - v) * more[row * share.size() + column - 1] + v * more[row * share.size() + column]; };
   return (1.0 - u) * line(k - 1) + u * line(k);
 }
 

@@ -71,7 +71,7 @@ TEST(PoreFlow, ConfinedColumnRelaxesAsInClosedForm) {
     for (const double T : {0.01, 0.03, 0.1, 0.3}) {
       double sum = M;
       for (int k = 1; k <= 60; ++k) {
-        const double b = root([&](double x) { return std::cos(x) * M / Q + std::sin(x) / x; }, (k - 0.5) * kPi, k * kPi), c = std::cos(b), m = std::sin(b) / b - c;
+        const double b = root([ratio = M / Q](double x) { return std::cos(x) * ratio + std::sin(x) / x; }, (k - 0.5) * kPi, k * kPi), c = std::cos(b), m = std::sin(b) / b - c;
         const double pp = 0.5 + std::sin(2 * b) / (4 * b) - 2 * c * std::sin(b) / b + c * c;
         sum += m * m / ((1 / Q + 1 / M) * pp - m * m / M) * std::exp(-b * b * T);
       }
@@ -119,7 +119,7 @@ TEST(PoreFlow, UnconfinedCylinderRelaxesAsArmstrongLaiAndMow) {
       for (int k = 1; k <= 40; ++k) {
         const auto J0 = [](double x) { return std::cyl_bessel_j(0.0, x); };
         const auto J1 = [](double x) { return std::cyl_bessel_j(1.0, x); };
-        const double a = root([&](double x) { return (1 / Q + 1 / M) * J0(x) - G * (2 * J1(x) / x - J0(x)) / (M * (M - G)); }, k == 1 ? 0.5 : (k - 0.75) * kPi - 0.5, (k - 0.25) * kPi + 0.2);
+        const double a = root([&, G = G, M = M, Q = Q](double x) { return (1 / Q + 1 / M) * J0(x) - G * (2 * J1(x) / x - J0(x)) / (M * (M - G)); }, k == 1 ? 0.5 : (k - 0.75) * kPi - 0.5, (k - 0.25) * kPi + 0.2);
         const double mean = 2 * J1(a) / a - J0(a), pp = J0(a) * J0(a) + J1(a) * J1(a) - 4 * J0(a) * J1(a) / a + J0(a) * J0(a);
         sum += std::pow((1 - 2 * nu) * mean, 2) / ((1 / Q + 1 / M) * pp + G / (M * (M - G)) * mean * mean) * std::exp(-a * a * T);
       }
