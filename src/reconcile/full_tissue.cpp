@@ -3,6 +3,7 @@
 // Friction at the platens is found under a growing compression, where it too is in proportion. A block without drainage or friction at its platens is homogeneous: nothing is asked of a mesh.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -194,10 +195,16 @@ class TissueSolver final : public FullSolver {
       on_mesh.press = &pressed;
       if (pressed.load.empty()) return false;
     }
+    const double ratio = press() ? stiffness(t, s.base[1], fine) / model_.punch_stiffness(t, s.base[1]) : 1.0;
+    std::array<double, 2> bond{};  // the tissue pulls as the mesh does, the blade comes off at its traction all the same
+    if (const double* p = s.on(Effect::contact_adhesion); p != nullptr && press()) {
+      bond[0] = p[0] / ratio;
+      if (s.form(Effect::contact_adhesion) != 0) bond[1] = p[1];
+      on_mesh.p[static_cast<std::size_t>(index_of(Effect::contact_adhesion))] = bond.data();
+    }
     model_.rig(t, on_mesh, out);
     out *= stiffer;
     if (!press()) return std::isfinite(stiffer);
-    const double ratio = stiffness(t, s.base[1], fine) / model_.punch_stiffness(t, s.base[1]);
     for (Eigen::Index c = 0; c < out.cols(); ++c) {
       const std::string& name = model_.data().outputs[static_cast<std::size_t>(c)];
       if (name == "force" || name == "pressure") out.col(c) *= ratio;

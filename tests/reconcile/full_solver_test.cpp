@@ -131,6 +131,39 @@ TEST(FullSolver, ABladeOnStiffeningTissueAgreesWithDepthOverHeightToFirstOrder) 
   std::printf("stiffening by 0.4 of the force at the peak: %.3f and %.3f of it on the mesh and a finer one\n", strong.load.back() / 0.04, fine.load.back() / 0.04);
 }
 
+TEST(FullSolver, AStickingBladePullsAsTheTissueDoesAndComesOffAtItsTraction) {
+  Dataset d;
+  d.rig = Rig::spatula_press;
+  d.outputs = {"force"};
+  for (const ParameterInfo& p : info(d.rig).baseline) d.nominal[p.name] = p.nominal, d.free.push_back(p.name);
+  Trial t;
+  t.time = Eigen::VectorXd::LinSpaced(401, 0.0, 4.0);
+  t.specimen = {{"length", 60e-3}, {"width", 50e-3}, {"height", 30e-3}, {"blade_length", 20e-3}, {"blade_width", 10e-3}};
+  t.data["depth"] = 2e-3 * (1.0 - t.time.array());  // pressed by 2 mm, drawn up to 6 mm above the surface
+  t.data["force"] = Eigen::VectorXd::Zero(401);
+  d.trials.push_back(t);
+  const auto model = make_model(d);
+  const auto full = make_full_solver(*model);
+  const double base[] = {3e3, 0.45}, area = 20e-3 * 10e-3, stiffness = 3e3 * press_stiffness(Vec3(60e-3, 50e-3, 30e-3), 20e-3, 10e-3, 0.45, 3);
+  const double traction = 1e-3 * stiffness / area, values[] = {traction, 3e-3};  // reached when drawn by 1 mm
+  for (const int form : {0, 2}) {
+    Setting s;
+    s.base = base;
+    s.p[static_cast<std::size_t>(index_of(Effect::contact_adhesion))] = values;
+    s.kind[static_cast<std::size_t>(index_of(Effect::contact_adhesion))] = form;
+    Eigen::MatrixXd out;
+    ASSERT_TRUE(full->run(t, s, false, out));
+    EXPECT_NEAR(out(0, 0), stiffness * 2e-3, 1e-9 * stiffness);
+    EXPECT_NEAR(out.minCoeff() / (-traction * area), 1.0, form == 0 ? 0.025 : 1e-9) << form;  // a sample is 0.02 mm
+    const double last = form == 0 ? 1e-3 : 3e-3;
+    for (int n = 0; n < 401; ++n) {
+      if (const double lift = -t.at("depth")[n]; lift > last + 2.1e-5) {
+        EXPECT_EQ(out(n, 0), 0.0) << form << " at " << lift;
+      }
+    }
+  }
+}
+
 TEST(FullSolver, ABladeComesBackWithWhatHasSetAndSoftened) {
   TissueLaw set;
   set.set = 0.1;
