@@ -215,16 +215,21 @@ void check_sizes(const Dataset& d, const Trial& t, const CsvTable& table) {
     if (2.0 * t.size("wall_thickness") >= t.size("outer_diameter"))
       throw InputError(d.folder + "/experiment.yaml", "specimen.wall_thickness", number(t.size("wall_thickness")) + " m", "less than half the outer diameter");
   }
-  if (d.rig == Rig::suture_cantilever) refuse("tip_drop", 100.0, "a drop of at most 100 m");
+  if (d.rig == Rig::suture_cantilever) {
+    refuse("overhang", 0.5, "an overhang of at most 0.5 m");
+    const double longest = t.has("overhang") ? t.at("overhang").maxCoeff() : t.size("overhang");
+    if (longest > 0.0) refuse("tip_drop", 3.0 * longest, "a drop of at most three times the overhang");
+  }
 }
 
-void check_output(Dataset& d, const Trial& t, const std::string& name) {
+void check_output(Dataset& d, const Trial& t, const CsvTable& table, const std::string& name) {
   const Eigen::VectorXd& v = t.at(name);
   double low = INFINITY, high = -INFINITY;
   int there = 0;
   for (const double x : v)
     if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x), ++there;
-  if (there == 0) throw InputError(t.file, "column " + d.channel(name).column, "no sample at all", "at least one number in an output channel");
+  const std::string lines = table.line.empty() ? t.file : table.file + ":" + std::to_string(table.line.front()) + "-" + std::to_string(table.line.back());
+  if (there == 0) throw InputError(lines, "column " + d.channel(name).column, "no sample at all", "at least one number in an output channel");
   if (there > 2 && low == high) note(d, t.file + ": channel " + name + " is constant: nothing was measured there or the channel is dead");
 }
 
@@ -308,7 +313,7 @@ void read_samples(Dataset& d, Trial& t, const std::optional<VideoSetup>& video) 
     if (c.input && !whole) note(d, t.file + ": input " + c.name + " has missing samples; those rows are left out");
   }
   check_sizes(d, t, table);
-  for (const std::string& name : d.outputs) check_output(d, t, name);
+  for (const std::string& name : d.outputs) check_output(d, t, table, name);
   if (t.missing > 0) note(d, t.file + ": " + std::to_string(t.missing) + " missing samples, left out");
   if (t.samples() < 4) throw InputError(path, "rows", std::to_string(t.samples()), "at least 4 samples");
   for (const std::string& name : d.outputs) d.hash = hash_bytes(t.at(name).data(), sizeof(double) * static_cast<std::size_t>(t.samples()), d.hash);

@@ -101,6 +101,11 @@ std::vector<HardwareCheck> check_units(const Dataset& d, const std::vector<Estim
   for (const Trial& t : d.trials) {
     if (d.rig == Rig::vessel_inflation) look(t, "outer_diameter", 0.2 * t.size("outer_diameter"), 5.0 * t.size("outer_diameter"), "usually", typical);
     if (d.rig == Rig::suture_pull || d.rig == Rig::needle_insertion) look(t, "speed", 2e-6, 1.0, "at most", largest);
+    if (d.rig == Rig::forceps_bridge) look(t, "angle", 0.02, 3.2, "at most", largest);
+    if (d.rig == Rig::suture_pull && t.has("hold_force") && t.has("pull_force")) {  // exp(1.5 wrap): friction no thread has
+      const double hold = t.at("hold_force").cwiseAbs().maxCoeff(), wrap = t.at("wrap_angle").maxCoeff();
+      look(t, "pull_force", 0.03 * hold, 3.0 * hold * std::exp(1.5 * wrap), "at most", largest);
+    }
     if (d.rig == Rig::tip_hold)
       for (const std::string& axis : d.outputs) look(t, axis.c_str(), 1e-6, 0.02, "wanders by", spread);
   }

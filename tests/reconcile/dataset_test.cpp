@@ -61,6 +61,19 @@ TEST(Dataset, QuotedCellsCarriageReturnsAndAByteOrderMarkAreRead) {
   EXPECT_TRUE(says(d.notices[0], "not a channel"));
 }
 
+/// A thread does not hang down by more than it is long, nor stand out by metres.
+TEST(Dataset, RefusesACantileverOfTheWrongUnit) {
+  for (const auto& [overhang, drop, said] : std::vector<std::tuple<std::string, std::string, std::string>>{{"mm", "mm", ""}, {"m", "mm", "a.csv:2: column L: found \"1\" m, expected an overhang of at most 0.5 m"},
+                                                                                                           {"mm", "m", "a.csv:4: column y: found \"0.3\" m, expected a drop of at most three times"}}) {
+    Folder f;
+    f.write("experiment.yaml", "format: filum-experiment/1\ntitle: thread\nsource: test\nrig: suture-cantilever\nspecimen: { diameter: \"25 um\", density: \"1140 kg/m3\" }\nmodel:\n  file: suture/elastic\n  free: [youngs_modulus]\n"
+                               "channels:\n  - { name: overhang, column: L, unit: " + overhang + ", kind: input }\n  - { name: tip_drop, column: y, unit: " + drop + ", kind: output }\ntrials:\n  - { file: a.csv }\n");
+    f.write("a.csv", "L,y\n1,0.001\n2,0.005\n3,0.3\n4,0.9\n");
+    EXPECT_TRUE(says(refusal(f), said)) << refusal(f);
+    EXPECT_EQ(refusal(f).empty(), said.empty()) << refusal(f);
+  }
+}
+
 struct BadCase {
   const char* name;
   std::string yaml, csv, expected;
@@ -79,7 +92,7 @@ TEST(Dataset, RefusesWithFileLineColumnAndExpectation) {
       {"short row", block_yaml(kOne), with(four, "1,-0.1,-1", "1,-0.1"), "a.csv:3: row: found 2 cells, expected 3"},
       {"column missing", block_yaml(kOne), with(four, "t,u,F", "t,x,F"), "expected a column named \"u\""},
       {"no samples", block_yaml(kOne), "t,u,F\n", "a.csv:2: rows"},
-      {"empty output", block_yaml(kOne), "t,u,F\n0,0,\n1,-0.1,\n2,-0.2,\n3,-0.3,\n", "no sample at all"},
+      {"empty output", block_yaml(kOne), "t,u,F\n0,0,\n1,-0.1,\n2,-0.2,\n3,-0.3,\n", "a.csv:2-5: column F: found no sample at all"},
       {"unit wrong by 1000", with(block_yaml(kOne), "unit: mm", "unit: m"), good, "less than the specimen's height (is the unit wrong by 1000?)"},
       {"wrong dimension", with(block_yaml(kOne), "unit: mm", "unit: kPa"), good, "channels[1].unit: found \"kPa\", expected a unit like m"},
       {"unknown unit", with(block_yaml(kOne), "unit: mm", "unit: furlong"), good, "channels[1].unit: found \"furlong\""},

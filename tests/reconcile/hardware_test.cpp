@@ -62,6 +62,8 @@ Dataset rig(Rig r, const std::string& channel, double size) {
   t.file = "a.csv";
   t.time = Eigen::VectorXd::LinSpaced(20, 0.0, 1.0);
   t.specimen = {{"outer_diameter", 1e-3}, {"wall_thickness", 1e-4}};
+  t.data["hold_force"] = Eigen::VectorXd::Constant(20, 0.02);
+  t.data["wrap_angle"] = Eigen::VectorXd::Constant(20, 3.0);
   t.data[channel] = size * Eigen::VectorXd::LinSpaced(20, 0.9, 1.1);
   d.trials.push_back(t);
   return d;
@@ -91,7 +93,7 @@ TEST(Hardware, NoticesAUnitThatIsWrongByAThousand) {
     const char* channel;
     double usual;
   };
-  for (const Size& v : {Size{Rig::vessel_inflation, "outer_diameter", 1.1e-3}, {Rig::suture_pull, "speed", 1e-3}, {Rig::needle_insertion, "speed", 1.5e-3}, {Rig::tip_hold, "x", 3e-4}})
+  for (const Size& v : {Size{Rig::vessel_inflation, "outer_diameter", 1.1e-3}, {Rig::suture_pull, "speed", 1e-3}, {Rig::needle_insertion, "speed", 1.5e-3}, {Rig::tip_hold, "x", 3e-4}, {Rig::forceps_bridge, "angle", 0.4}, {Rig::suture_pull, "pull_force", 0.04}})
     for (const double times : {1e-3, 1.0, 1e3}) EXPECT_EQ(check_units(rig(v.rig, v.channel, times * v.usual), {}).size(), times == 1.0 ? 0u : 1u) << v.channel << times;
 }
 
