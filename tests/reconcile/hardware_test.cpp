@@ -97,5 +97,11 @@ TEST(Hardware, NoticesAUnitThatIsWrongByAThousand) {
     for (const double times : {1e-3, 1.0, 1e3}) EXPECT_EQ(check_units(rig(v.rig, v.channel, times * v.usual), {}).size(), times == 1.0 ? 0u : 1u) << v.channel << times;
 }
 
+TEST(Hardware, SaysSizesInTheChannelsOwnUnit) {
+  Dataset d = rig(Rig::tip_hold, "x", 0.3);
+  d.channels[0].unit = "mm", d.channels[0].scale = 1e-3;
+  EXPECT_EQ(check_units(d, {}).at(0).found, "wanders by 60 mm, expected 0.001 to 20: is the unit wrong by 1000?");
+}
+
 }  // namespace
 }  // namespace filum::reconcile
