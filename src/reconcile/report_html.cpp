@@ -255,9 +255,15 @@ void closing(const Dataset& d, const Result& r, const std::string& program, std:
     s << "</table><p>The signatures of the first two correlate by " << number(r.correlation, 3) << "; a refit of the baseline hides " << number(100 * r.masked, 3) << " % of the first one's.</p>\n";
   }
   if (r.next) s << "<h2>Next experiment</h2><p>" << escaped(r.next->protocol) << ": " << escaped(r.next->why) << ". It would decide in " << number(100 * r.next->chance, 3) << " % of 50 simulated repetitions.</p>\n";
-  s << "<h2>Not testable with these trials</h2><table>" << row({"effect", "why", "what would show it"}, "th");
-  for (const NotTestable& n : r.not_testable) s << row({info(n.effect).name, n.why, n.needs});
-  s << "</table>\n<h2>Rules</h2><table>" << row({"rule", "value"}, "th");
+  s << "<h2>Not testable with these trials</h2>";
+  if (r.not_testable.empty()) {
+    s << "<p>Every effect that the catalogue has for this rig would show in these trials.</p>\n";
+  } else {
+    s << "<table>" << row({"effect", "why", "what would show it"}, "th");
+    for (const NotTestable& n : r.not_testable) s << row({info(n.effect).name, n.why, n.needs});
+    s << "</table>\n";
+  }
+  s << "<h2>Rules</h2><table>" << row({"rule", "value"}, "th");
   const Rules& k = r.rules;
   for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"material change, share of full scale", k.materiality}, {"the same in an eighth of a record", k.window_materiality},
        {"chance of noise alone to detect", k.detect_p}, {"fall of chi-squared to detect", k.detect}, {"residual structure that proves a gap, sd", k.structure}, {"fall of BIC to accept", k.accept_evidence}, {"share of the gap to be explained", k.explained},
