@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "base/error.h"
 #include "base/yaml_file.h"
@@ -57,6 +58,26 @@ Along along(const PointTrack& t, const Eigen::Vector2d& e) {
 void put(VideoChannels& out, const std::string& name, const VideoSetup& s, const Eigen::VectorXd& value, const Eigen::VectorXd& variance) {
   out.value[name] = s.scale * value;
   out.sd[name] = s.scale * variance.cwiseMax(0.0).cwiseSqrt();
+}
+
+/// Refuses a film of which a point is lost for more than a fifth, with where, when and why; says what was lost of others.
+void say_what_was_lost(const VideoSetup& setup, const VideoTracks& tracks, VideoChannels& out) {
+  for (std::size_t i = 0; i < setup.points.size(); ++i) {
+    const PointTrack& t = tracks.points[i];
+    const std::string& name = setup.points[i].name;
+    const Eigen::Index frames = tracks.time.size();
+    if (!t.lost.empty()) {
+      Eigen::Index k = 0;  // the last frame in which it was seen
+      while (k + 1 < frames && t.position.col(k + 1).allFinite()) ++k;
+      char found[200];
+      std::snprintf(found, sizeof found, "lost after frame %ld of %ld (%.2f s) at x %.0f, y %.0f: %s", static_cast<long>(k) + 1, static_cast<long>(frames), tracks.time[k], t.position(0, k), t.position(1, k), t.lost.c_str());
+      if (5 * (frames - 1 - k) > frames)
+        throw InputError(setup.file, "point " + name, found, "a pattern that stays in view: a point further from what covers it or from the picture's border, a smaller `patch`, more frames a second, or a film that ends there");
+      out.notices.push_back("point " + name + " " + found);
+    }
+    if (t.covered > 0) out.notices.push_back("something came over the pattern at " + name + ": in " + std::to_string(t.covered) + " of " + std::to_string(frames) + " frames it was followed by the part in view");
+    if (t.restarts > 0) out.notices.push_back("the pattern at " + name + " changed and was taken anew " + std::to_string(t.restarts) + " times: its errors add up from there");
+  }
 }
 
 }  // namespace
@@ -117,13 +138,7 @@ VideoChannels follow_video(const VideoSetup& setup, Rig rig, const std::string& 
       put(out, p.name == "blade" ? "depth" : p.name, setup, (sunk.value.array() - sunk.value[0]).matrix(), sunk.variance);
     }
   }
-  for (const auto& [name, v] : out.value) {
-    const auto lost = std::count_if(v.begin(), v.end(), [](double x) { return !std::isfinite(x); });
-    if (5 * lost > v.size()) throw InputError(setup.file, "channel " + name, std::to_string(lost) + " of " + std::to_string(v.size()) + " frames lost", "a pattern that stays in view and keeps its look");
-  }
-  for (std::size_t i = 0; i < setup.points.size(); ++i)
-    if (tracks.points[i].restarts > 0)
-      out.notices.push_back("the pattern at " + setup.points[i].name + " changed and was taken anew " + std::to_string(tracks.points[i].restarts) + " times: its errors add up from there");
+  say_what_was_lost(setup, tracks, out);
   return out;
 }
 

@@ -18,6 +18,8 @@ struct PointTrack {
   Eigen::Matrix2Xd position;            // [px], of each frame; NaN where lost
   Eigen::Matrix3Xd covariance;          // [px2], xx, xy, yy
   int restarts = 0;                     // times the pattern had changed so much that it was taken anew
+  int covered = 0;                      // frames in which it was followed by the part of it that nothing covered
+  std::string lost = {};                   // why it was lost; empty: it never was
 };
 
 struct VideoTracks {

@@ -93,6 +93,37 @@ TEST_F(Tracks, TakesAPatternThatTurnsAnewAndSaysSo) {
   EXPECT_GT(v.points[0].covariance(0, 59), v.points[0].covariance(0, 1));
 }
 
+/// A platen's pattern that comes down by `way` px and vanishes behind an edge at y = 60; what lies below rests.
+Origin behind_an_edge(double way) {
+  return [way](double x, double y, int k) { return std::array{x, y < 60 ? y - way * std::min(k / 25.0, 1.0) : y}; };
+}
+
+TEST_F(Tracks, FollowsWhatRestsBesideWhatMovesAndWhatIsHalfCovered) {
+  // seeds 50 to 52: coarse levels of the pyramid took the first one's resting point along; the edge comes to the middle of the moving one's square
+  double worst = 0.0;
+  for (const std::uint64_t seed : {50u, 51u, 52u}) {
+    ASSERT_TRUE(render(file("a.avi"), 40, 100, 140, 1.5, Waves(seed), behind_an_edge(30.0), seed));
+    const VideoTracks v = track_video({file("a.avi"), {{50, 30}, {50, 110}}, 21});
+    EXPECT_EQ(v.points[0].restarts + v.points[1].restarts, 0) << seed;
+    EXPECT_GT(v.points[0].covered, 15) << seed;
+    EXPECT_EQ(v.points[1].covered, 0) << seed;
+    for (int k = 1; k < 40; ++k) {
+      worst = std::max(worst, (v.points[0].position.col(k) - Eigen::Vector2d(50, 30 + 30 * std::min(k / 25.0, 1.0))).norm());
+      worst = std::max(worst, (v.points[1].position.col(k) - Eigen::Vector2d(50, 110)).norm());
+    }
+  }
+  std::printf("half covered and at rest: at most %.3f px off\n", worst);
+  EXPECT_LT(worst, 0.1);
+}
+
+TEST_F(Tracks, LosesWhatIsCoveredRatherThanTakeTheCover) {
+  ASSERT_TRUE(render(file("a.avi"), 40, 100, 140, 1.5, Waves(50), behind_an_edge(45.0), 50));
+  const VideoTracks v = track_video({file("a.avi"), {{50, 30}}, 21});
+  EXPECT_EQ(v.points[0].lost, "something came over it");
+  EXPECT_FALSE(v.points[0].position.col(30).allFinite());
+  for (int k = 1; k < 40 && v.points[0].position.col(k).allFinite(); ++k) EXPECT_NEAR(v.points[0].position(1, k), 30 + 45 * std::min(k / 25.0, 1.0), 0.1) << k;
+}
+
 TEST_F(Tracks, RefusesWhatIsNoVideoAndPointsWithoutPattern) {
   EXPECT_THROW(track_video({file("none.avi"), kPoints, 21}), InputError);
   Waves flat(5);

@@ -109,6 +109,54 @@ TEST(VideoTrial, CreepIsNamedFromFilmsAlone) {
   EXPECT_TRUE(r.confirmation->holds);
 }
 
+/// Films of a block pressed by 0.6 mm at two speeds, with the force of relaxation g1 = 0.4, tau = 2 s, beside them. The platen's point comes to the edge behind
+/// which its pattern vanishes (`deeper` 1) or beyond it.
+void film_a_block(const Folder& f, double deeper, double seconds) {
+  std::string trials;
+  std::uint64_t seed = 50;
+  Rng rng(77);
+  for (const auto& [name, ramp] : {std::pair{"a", 0.8}, {"b", 3.2}, {"c", 0.8}}) {
+    const auto depth = [ramp = ramp](double t) { return 30.0 * std::min(t / ramp, 1.0); };  // [px]
+    const Origin press = [&](double x, double y, int k) { return y < 60 ? std::array{x, y - deeper * depth(k / 25.0)} : std::array{x, y}; };
+    ASSERT_TRUE(render(f.file(std::string(name) + ".avi"), static_cast<int>(25 * seconds), 100, 140, 1.5, Waves(seed), press, seed));
+    ++seed;
+    std::ostringstream csv;
+    csv << "t,F\n";
+    double q = 0.0;  // of the branch that relaxes
+    const double h = 0.04;
+    for (int i = 0; h * i < seconds; ++i) {
+      if (i > 0) q = q * std::exp(-h / 2.0) + 0.02 * (depth(h * i) - depth(h * (i - 1))) * 2.0 / h * -std::expm1(-h / 2.0);
+      csv << h * i << "," << -20.0 * (0.6 * 0.02 * depth(h * i) + 0.4 * q) + 0.05 * rng.normal() << "\n";
+    }
+    f.write(std::string(name) + ".csv", csv.str());
+    trials += "  - { file: " + std::string(name) + ".avi, protocol: { mode: compression, rate: \"" + std::to_string(0.6 / ramp) +
+              " mm/s\" }, video: { scale: \"20 um\", points: [ { name: platen, x: 50, y: 30 }, { name: base, x: 50, y: 110 } ] } }\n";
+  }
+  f.write("experiment.yaml", block_yaml(trials));
+}
+
+TEST(VideoTrial, RelaxationOfABlockIsNamedFromFilms) {
+  Folder f;
+  film_a_block(f, 1.0, 8.0);
+  const Result r = reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  EXPECT_EQ(r.effects[0].effect, Effect::viscoelastic_relaxation);
+  EXPECT_NEAR(r.effects[0].parameters[0].value, 0.4, 0.04);
+  EXPECT_NEAR(r.effects[0].parameters[1].value, 2.0, 0.2);
+}
+
+TEST(VideoTrial, SaysWhatWasLostWhereAndWhy) {
+  Folder f;
+  film_a_block(f, 1.5, 4.0);
+  try {
+    load_dataset(f.path(), FILUM_SOURCE_DIR);
+    FAIL() << "a platen that went out of sight was followed";
+  } catch (const InputError& e) {
+    const std::string what = e.what();
+    for (const char* said : {"a.avi", "point platen", "lost after frame", "something came over it", "smaller `patch`"}) EXPECT_NE(what.find(said), std::string::npos) << what;
+  }
+}
+
 TEST(VideoTrial, RefusesWithWhatWasExpected) {
   const auto refusal = [](const std::string& yaml, bool with_video) {
     Folder f;
