@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -157,6 +158,10 @@ YamlNode::YamlNode(std::shared_ptr<Document> document, Value* value, std::string
 }
 
 YamlNode YamlNode::load(const std::string& path) {
+  std::error_code none;
+  const auto status = std::filesystem::status(path, none);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw InputError(path, "file", std::filesystem::is_directory(status) ? "a folder" : "a pipe or a device", "a YAML file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path, "file", "nothing that can be read", "a YAML file");
   std::string text;
@@ -183,7 +188,8 @@ YamlNode YamlNode::parse(std::string_view text, const std::string& file_name) {
     if (parser) throw InputError(file_name, "YAML", "more than one document", "one document");
   } catch (const YAML::Exception& error) {
     const int line = error.mark.is_null() ? 1 : error.mark.line + 1;
-    throw InputError(file_name + ":" + std::to_string(line), "YAML", error.msg, "well-formed YAML");
+    const std::string column = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.column + 1);
+    throw InputError(file_name + ":" + std::to_string(line) + column, "YAML", error.msg, "well-formed YAML");
   }
   if (document->root.kind != Value::Kind::map)
     throw InputError(file_name + ":1", "YAML", document->root.described(), "a map of fields");

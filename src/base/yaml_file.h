@@ -1,6 +1,6 @@
 #pragma once
 // Typed, strict reading of YAML: every field is asked for with its unit and range, unknown keys are refused
-// by finish(), and every error is an InputError that names "FILE:LINE", the dotted path of the field, the
+// by finish(), and every error is an InputError that names "FILE:LINE" (with the column where it is no YAML), the dotted path of the field, the
 // value found and what was expected. Size, depth and number of values are bounded; anchors, aliases, tags,
 // repeated keys and more than one document are refused.
 //

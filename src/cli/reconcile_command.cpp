@@ -50,6 +50,8 @@ reconcile::Result solve(const std::string& folder, const std::string& out, const
   reconcile::write_report(d, r, out, program_text());
   name = d.name;
   if (progress)
+    for (const std::string& notice : d.notices) std::fprintf(stderr, "%s\n", notice.c_str());
+  if (progress)
     for (const reconcile::HardwareCheck& h : reconcile::check_units(d, r.baseline)) std::fprintf(stderr, "%s: %s\n", h.where.c_str(), h.found.c_str());
   if (progress && o.json) print_json(reconcile::report_json(d, r));
   return r;

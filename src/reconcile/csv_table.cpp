@@ -2,9 +2,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "base/error.h"
 
@@ -12,6 +12,7 @@ namespace filum::reconcile {
 namespace {
 
 constexpr std::size_t kMaxBytes = 256u << 20;
+constexpr double kLargest = 1e30;  // beyond it squares overflow, and no unit asks for it
 
 std::string shown(const std::string& text) {
   std::string out;
@@ -82,12 +83,32 @@ class Reader {
 }  // namespace
 
 CsvTable CsvTable::load(const std::string& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw InputError(path, "file", "no such file", "a CSV file");
+  // a pipe would be waited for, a device read until the memory is full
+  if (!std::filesystem::is_regular_file(status)) throw InputError(path, "file", std::filesystem::is_directory(status) ? "a folder" : "a pipe or a device", "a CSV file");
+  if (std::filesystem::file_size(path, error) > kMaxBytes && !error) throw InputError(path, "file", "more than 256 MiB", "a CSV file of at most 256 MiB");
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file) text << file.rdbuf();
-  if (!file || file.bad()) throw InputError(path, "file", "nothing that can be read", "a CSV file");
-  return parse(text.str(), path);
+  std::string text;
+  char block[65536];
+  while (text.size() <= kMaxBytes && (file.read(block, sizeof block) || file.gcount() > 0)) text.append(block, static_cast<std::size_t>(file.gcount()));
+  if (!file.eof() || file.bad()) throw InputError(path, "file", "nothing that can be read", "a CSV file");
+  return parse(text, path);
 }
+
+namespace {
+
+/// What a table from a country of decimal commas looks like.
+constexpr const char* kDots = " (cells are separated by commas, and numbers have a dot)";
+
+std::string hint(const std::vector<std::string>& header, const std::vector<std::string>& cells) {
+  const std::string& first = cells.empty() ? std::string() : cells[0];
+  if (header.size() == 1 && header[0].find_first_of(";\t") != std::string::npos) return kDots;
+  return cells.size() > header.size() || first.find(';') != std::string::npos ? kDots : "";
+}
+
+}  // namespace
 
 CsvTable CsvTable::parse(const std::string& whole, const std::string& file) {
   if (whole.size() > kMaxBytes) throw InputError(file, "file", "more than 256 MiB", "a CSV file of at most 256 MiB");
@@ -103,7 +124,7 @@ CsvTable CsvTable::parse(const std::string& whole, const std::string& file) {
     if (cells.size() == 1 && cells[0].empty() && table.header.size() > 1) continue;  // an empty line at the end
     if (cells.size() != table.header.size())
       throw InputError(file + ":" + std::to_string(reader.line()), "row", std::to_string(cells.size()) + " cells",
-                       std::to_string(table.header.size()) + " as in the header");
+                       std::to_string(table.header.size()) + " as in the header" + hint(table.header, cells));
     table.rows.push_back(cells);
     table.line.push_back(reader.line());
   }
@@ -121,7 +142,7 @@ int CsvTable::column(const std::string& name) const {
   if (found < 0) {
     std::string all;
     for (const std::string& h : header) all += (all.empty() ? "" : ", ") + h;
-    throw InputError(file + ":1", "header", "columns " + all, "a column named " + shown(name));
+    throw InputError(file + ":1", "header", "columns " + all, "a column named " + shown(name) + hint(header, {}));
   }
   return found;
 }
@@ -134,9 +155,9 @@ Eigen::VectorXd CsvTable::numbers(int column) const {
     if (!cell.empty()) {
       const char* begin = cell.data() + (cell[0] == '+' ? 1 : 0);
       const auto [end, error] = std::from_chars(begin, cell.data() + cell.size(), value);
-      if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+      if (error != std::errc() || end != cell.data() + cell.size() || !(std::abs(value) < kLargest))
         throw InputError(file + ":" + std::to_string(line[r]), "column " + header[static_cast<std::size_t>(column)], shown(cell),
-                         "a finite number with a dot, or nothing where the sample is missing");
+                         "a finite number with a dot below 1e30, or nothing where the sample is missing");
     }
     out[static_cast<Eigen::Index>(r)] = value;
   }

@@ -140,7 +140,7 @@ void read_model(const YamlNode& file, Dataset& d, const std::string& root) {
       if (p.name == name) return p;
     std::string all;
     for (const ParameterInfo& p : info(d.rig).baseline) all += (all.empty() ? "" : ", ") + p.name;
-    at.refuse(key, "names of baseline parameters: " + (all.empty() ? "none for this rig" : all));
+    at.refuse(key, "names of baseline parameters, not \"" + name + "\": " + (all.empty() ? "none for this rig" : all));
   };
   if (model.has("free")) {
     d.free = model.texts("free");
@@ -222,6 +222,52 @@ void check_sizes(const Dataset& d, const Trial& t, const CsvTable& table) {
   }
 }
 
+/// One sample (or two, three) a thousand times beyond all others would be the full scale by which everything is judged: a lost dot, or a sensor that failed.
+void check_spike(const Trial& t, const CsvTable& table, const Channel& c) {
+  const Eigen::VectorXd& v = t.at(c.name);
+  std::vector<std::pair<double, Eigen::Index>> sorted;
+  for (Eigen::Index i = 0; i < v.size(); ++i)
+    if (std::isfinite(v[i])) sorted.emplace_back(v[i], i);
+  if (sorted.size() < 12) return;
+  std::sort(sorted.begin(), sorted.end());
+  const std::size_t n = sorted.size();
+  const double rest = sorted[n - 4].first - sorted[3].first, whole = sorted[n - 1].first - sorted[0].first;
+  if (!(rest > 0.0) || whole < 1000.0 * rest) return;
+  const double middle = sorted[n / 2].first;
+  const Eigen::Index at = std::abs(sorted[0].first - middle) > std::abs(sorted[n - 1].first - middle) ? sorted[0].second : sorted[n - 1].second;
+  throw InputError(table.file + ":" + std::to_string(table.line[static_cast<std::size_t>(at)]), "column " + c.column, number((v[at] - c.shift) / c.scale) + " " + c.unit,
+                   "a sample less than a thousand times beyond all others of its record (leave the cell empty where the sensor failed)");
+}
+
+/// Whether a channel takes more than one value over all trials.
+bool moves(const Dataset& d, const std::string& name) {
+  double first = NAN;
+  for (const Trial& t : d.trials)
+    for (const double x : t.at(name)) {
+      if (!std::isfinite(x)) continue;
+      if (std::isnan(first)) first = x;
+      if (x != first) return true;
+    }
+  return false;
+}
+
+/// Over all trials: an output that never answers, inputs that never move. A still hand has no inputs: an axis that its sensor does not measure is left out.
+void check_constant(Dataset& d) {
+  bool inputs = false, moved = d.rig == Rig::tip_hold;
+  for (const Channel& c : d.channels)
+    if (c.input && c.name != "time") inputs = true, moved = moved || moves(d, c.name);
+  if (inputs && !moved) note(d, "no input changes in any trial: how the outputs answer cannot be learnt from them");
+  for (const Channel& c : d.channels) {
+    if (c.input || !moved || moves(d, c.name)) continue;
+    if (d.rig == Rig::tip_hold && d.outputs.size() > 1) {
+      note(d, "channel " + c.name + " never changes and was left out");
+      std::erase(d.outputs, c.name);
+      continue;
+    }
+    throw InputError((fs::path(d.folder) / d.trials[0].file).string(), "column " + c.column, "the same value in every row of every trial", "an output that answers to its inputs (a dead channel? leave it out of channels)");
+  }
+}
+
 void check_output(Dataset& d, const Trial& t, const CsvTable& table, const std::string& name) {
   const Eigen::VectorXd& v = t.at(name);
   double low = INFINITY, high = -INFINITY;
@@ -230,6 +276,7 @@ void check_output(Dataset& d, const Trial& t, const CsvTable& table, const std::
     if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x), ++there;
   const std::string lines = table.line.empty() ? t.file : table.file + ":" + std::to_string(table.line.front()) + "-" + std::to_string(table.line.back());
   if (there == 0) throw InputError(lines, "column " + d.channel(name).column, "no sample at all", "at least one number in an output channel");
+  check_spike(t, table, d.channel(name));
   if (there > 2 && low == high) note(d, t.file + ": channel " + name + " is constant: nothing was measured there or the channel is dead");
 }
 
@@ -315,8 +362,12 @@ void read_samples(Dataset& d, Trial& t, const std::optional<VideoSetup>& video) 
   check_sizes(d, t, table);
   for (const std::string& name : d.outputs) check_output(d, t, table, name);
   if (t.missing > 0) note(d, t.file + ": " + std::to_string(t.missing) + " missing samples, left out");
-  if (t.samples() < 4) throw InputError(path, "rows", std::to_string(t.samples()), "at least 4 samples");
-  for (const std::string& name : d.outputs) d.hash = hash_bytes(t.at(name).data(), sizeof(double) * static_cast<std::size_t>(t.samples()), d.hash);
+  const int least = d.rig == Rig::tip_hold ? 64 : 4;  // a still hand is judged by its spectrum
+  if (t.samples() < least) throw InputError(path, "rows", std::to_string(t.samples()), "at least " + std::to_string(least) + " samples");
+  const auto add = [&](const Eigen::VectorXd& v) { d.hash = hash_bytes(v.data(), sizeof(double) * static_cast<std::size_t>(v.size()), d.hash); };
+  add(t.time);
+  for (const Channel& c : d.channels)
+    if (c.name != "time") add(t.at(c.name));
 }
 
 /// Rows whose inputs are missing cannot be simulated.
@@ -378,6 +429,7 @@ void read_trials(const YamlNode& file, Dataset& d) {
   if (d.trials.empty()) file.refuse("trials", "at least one trial");
   const auto held = std::count_if(d.trials.begin(), d.trials.end(), [](const Trial& t) { return t.hold_out; });
   if (held == static_cast<std::ptrdiff_t>(d.trials.size())) file.refuse("trials", "at least one trial that is not held out");
+  check_constant(d);
   if (d.trials.size() == 1) note(d, "one trial only: nothing can be held out, and evidence comes from a single record");
   std::map<std::string, int> letters;
   for (const Trial& t : d.trials)
@@ -417,6 +469,9 @@ Dataset load_dataset(const std::string& folder, const std::string& root) {
   d.name = fs::absolute(path).filename().string();
   if (!fs::is_directory(folder)) throw InputError(folder, "dataset", "no such folder", "a folder with experiment.yaml");
   const YamlNode file = YamlNode::load(folder + "/experiment.yaml");
+  std::ostringstream text;
+  text << std::ifstream(folder + "/experiment.yaml", std::ios::binary).rdbuf();
+  d.hash = hash_text(text.str());
   file.choice("format", {"filum-experiment/1"});
   d.title = file.text_or("title", d.name);
   d.source = file.text_or("source", "");

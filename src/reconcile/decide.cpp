@@ -54,6 +54,7 @@ struct Challenge {
   double explained = 1.0;  // share of the held-out misfit that goes
   Gap gap;
   std::string how;
+  Fit before, after;       // predictions of the trials marked hold_out
 };
 
 void add_squares(const RigModel& model, const Noise& noise, const Fit& f, double& sum, int& n) {
@@ -92,21 +93,22 @@ Challenge challenge(const Search& search, const Fit& base, const Fit& named, con
   int n = 0, m = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     // a fold without which the effect cannot be learnt says nothing about transfer
-    if (a[i].chi2 > 3.0 * b[i].chi2 && parts.size() > 2) continue;
+    if (a[i].chi2 > options.rules.fold_unlearnt * b[i].chi2 && parts.size() > 2) continue;
     before += b[i].chi2 / search.dispersion() - b[i].samples;
     after += a[i].chi2 / search.dispersion() - a[i].samples;
     add_squares(all.model(), all.noise(), b[i], sb, n);
     add_squares(all.model(), all.noise(), a[i], sa, m);
   }
+  if (marked) out.before = b[0], out.after = a[0];
   if (n == 0) return out;
   out.gap = {std::sqrt(sb / n), std::sqrt(sa / m)};
-  out.done = before > 4.0 * std::sqrt(2.0 * n);
+  out.done = before > options.rules.challenge * std::sqrt(2.0 * n);
   if (out.done) out.explained = 1.0 - std::max(0.0, after) / before;
   return out;
 }
 
 /// Whether the baseline with the model file's own values misfits although the refitted one does not.
-bool refit_matters(const Search& search) {
+bool refit_matters(const Search& search, const Rules& rules) {
   const Fitter& fitter = search.fitter();
   const Dataset& d = fitter.model().data();
   bool with_prior = false;
@@ -115,7 +117,7 @@ bool refit_matters(const Search& search) {
   Fit nominal = search.base();
   for (const int i : fitter.free_baseline()) nominal.base[static_cast<std::size_t>(i)] = d.nominal.at(fitter.model().baseline()[static_cast<std::size_t>(i)].name);
   const Fit there = fitter.transfer(nominal, fitter.use);
-  return there.chi2 - search.base().chi2 > 12.0 * static_cast<double>(fitter.free_baseline().size()) && search.material(there, search.base()) > 1.0;
+  return there.chi2 - search.base().chi2 > rules.refit * static_cast<double>(fitter.free_baseline().size()) && search.material(there, search.base()) > 1.0;
 }
 
 void list_tried(const Search& search, Result& r, const Fit* best) {
@@ -266,6 +268,7 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   const Challenge c = challenge(search, search.base(), winner, options);
   r.held_out = c.gap;
   r.held_out_how = c.how;
+  r.held_before = c.before, r.held_after = c.after;
   const bool holds = !c.done || c.explained >= r.rules.held_out;
   const double explained = search.explained(winner);
   const bool confirmed = confirm(search, winner, options, r);
@@ -330,6 +333,17 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   r.sentence += (r.next->chance >= 0.5 ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + r.next->protocol + text + ".";
 }
 
+/// How near the best candidate came where nothing is named.
+std::string nearest(const Search& search, const Result& r) {
+  char text[400];
+  const Fit* best = search.candidates().empty() ? nullptr : &search.candidates()[0];
+  std::snprintf(text, sizeof text, " An effect that lowers BIC by %.3g and changes a record by %.2g %% of full scale would change this", r.rules.accept_evidence, 100 * std::max(r.rules.materiality, solver_error(search.fitter(), search.base()).solver()));
+  std::string out = text;
+  if (best == nullptr) return out + "; none of the catalogue promises enough to be fitted.";
+  std::snprintf(text, sizeof text, "; nearest comes %s (%.3g, and %.2g %%).", names(effects_in(*best)).c_str(), search.bic(search.base()) - search.bic(*best), 100 * r.rules.materiality * search.material(*best, search.base()));
+  return out + text;
+}
+
 void name_nothing(const Search& search, Result& r, const Options& options) {
   const Structure s = search.structure(search.base());
   // what is left, averaged over the block length where it stands out and freed of the noise's own share, in parts of full scale
@@ -345,18 +359,21 @@ void name_nothing(const Search& search, Result& r, const Options& options) {
   const Challenge c = challenge(search, search.base(), search.base(), options);
   r.held_out = c.gap;
   r.held_out_how = c.how;
+  r.held_before = c.before, r.held_after = c.after;
   r.baseline = r.baseline_alone;
   for (const Fit& f : search.candidates())
     if (r.rivals.size() < 4) r.rivals.push_back({effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""});
   if (seen) {
     r.verdict = "unknown";
     say(r, "The residual has a shape that noise does not have, and no candidate explains it.");
-  } else if (refit_matters(search)) {
+  } else if (refit_matters(search, r.rules)) {
     r.verdict = "parameter";
-    say(r, "The model's form is right; its parameters are not those of the model file, but lie within their stated range.");
+    say(r, "The model's form is right; its parameters are not those of the model file, but lie within their stated range." + nearest(search, r));
   } else {
     r.verdict = "agree";
-    say(r, "Nothing is missing beyond the noise and 0.6 % of full scale.");
+    char text[100];
+    std::snprintf(text, sizeof text, "Nothing is missing beyond the noise and %.2g %% of full scale.", 100 * r.rules.materiality);
+    say(r, text + nearest(search, r));
   }
 }
 
@@ -367,15 +384,44 @@ std::string described(const Result& r) {
   const auto most = std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   char text[240] = "";
   std::string out;
-  if (most != phases.end()) std::snprintf(text, sizeof text, " %.0f %% of it sit where the trials are in %s", 100 * most->second, most->first.c_str());
+  if (most != phases.end()) std::snprintf(text, sizeof text, " %.0f %% of it sits where the trials are in %s", 100 * most->second, most->first.c_str());
   out += text;
   if (!r.shape.empty()) std::snprintf(text, sizeof text, "; it follows %s (in %.0f %% of resamplings)", r.shape[0].name.c_str(), 100 * r.shape[0].stability), out += text;
   std::snprintf(text, sizeof text, ". A candidate that takes away %.0f %% of it, and %.0f %% in protocols it was not fitted to, would change this.", 100 * r.rules.explained, 100 * r.rules.held_out);
   return out + (out.empty() ? text + 1 : text);
 }
 
+/// Every effect of the rig by the best of its score tests against the baseline, and what came of it.
+std::vector<Screened> screened(const Search& search, const Result& r) {
+  const RigModel& model = search.fitter().model();
+  const auto scores = Screen(search.fitter(), search.base()).all(r.forms);
+  const double top = scores.empty() ? 0.0 : scores[0].gain;
+  const auto fitted = [&](Effect e) {
+    return std::any_of(search.candidates().begin(), search.candidates().end(), [&](const Fit& f) { return std::any_of(f.forms.begin(), f.forms.end(), [&](const Form* g) { return g->effect == e; }); });
+  };
+  std::vector<Screened> out;
+  for (const Form& f : model.all_forms()) {
+    if (std::any_of(out.begin(), out.end(), [&](const Screened& s) { return s.effect == f.effect; })) continue;
+    Screened s{f.effect, f.text, 0.0, 1.0, ""};
+    char text[120];
+    const auto at = std::find_if(scores.begin(), scores.end(), [&](const Score& x) { return x.form->effect == f.effect; });
+    if (at != scores.end()) s.form = at->form->text, s.gain = at->gain, s.masked = at->masked;
+    if (f.line) s.gain = s.masked = NAN;  // of free phase: tested in the spectrum
+    if (fitted(f.effect)) s.what = "fitted";
+    else if (std::none_of(r.forms.begin(), r.forms.end(), [&](const Form& g) { return g.effect == f.effect; })) s.what = "these trials could not show it";
+    else if (f.line) std::snprintf(text, sizeof text, "not fitted: a line as strong comes by chance in %.2g of the cases", search.line_p(f, search.base())), s.what = text;
+    else if (at == scores.end() || at->gain < r.rules.screen_least) std::snprintf(text, sizeof text, "not fitted: promises less than %.3g", r.rules.screen_least), s.what = text;
+    else if (at->gain < r.rules.screen_share * top) std::snprintf(text, sizeof text, "not fitted: less than %.2g of the best promise", r.rules.screen_share), s.what = text;
+    else s.what = "not fitted: promised too little before the noise was known";
+    out.push_back(std::move(s));
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Screened& a, const Screened& b) { return a.gain > b.gain || (!std::isnan(a.gain) && std::isnan(b.gain)); });
+  return out;
+}
+
 void finish(const Search& search, const Fit* winner, Result& r) {
   const Fitter& fitter = search.fitter();
+  r.screened = screened(search, r);
   r.numerics = solver_error(fitter, winner != nullptr ? *winner : search.base());
   r.numerics.sensitivities = check_sensitivities(fitter, winner != nullptr ? *winner : search.base());
   r.noise = fitter.noise();
@@ -385,7 +431,7 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   r.fit = gap_of(fitter.model(), r.noise, r.before, r.after, fitter.use);
   r.structure_before = search.structure(search.base()).z;
   r.structure_after = search.structure(r.after).z;
-  if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise);
+  if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise), r.where_by = localise_by(fitter.model(), r.before, r.noise);
   r.residual_terms = describe(fitter.model(), r.before);
   if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after);
   if (r.verdict == "unknown") r.sentence += described(r);

@@ -1,11 +1,9 @@
-// Values with 95 % intervals from the curvature at the optimum (widened by the overdispersion), where the misfit sits, the shape of
-// what no effect explains, and the experiment that would tell two rivals apart.
+// Values with 95 % intervals from the curvature at the optimum (widened by the overdispersion), and the shape of what no effect explains.
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "base/rng.h"
 #include "reconcile/result.h"
@@ -131,44 +129,6 @@ void widen_by_forms(std::vector<NamedEffect>& effects, const std::vector<NamedEf
         for (const Estimate& q : o.parameters)
           if (q.name == p.name && q.unit == p.unit && std::isfinite(q.value)) p.low = std::min(p.low, q.value), p.high = std::max(p.high, q.value);
     }
-}
-
-std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& noise) {
-  const Dataset& d = model.data();
-  std::string input;
-  for (const Channel& c : d.channels)
-    if (c.input && c.name != "time" && input.empty()) input = c.name;
-  std::vector<Cell> cells;
-  double total = 0.0;
-  for (std::size_t i = 0; i < base.residual.size(); ++i) {
-    if (base.residual[i].empty()) continue;
-    const Trial& t = d.trials[i];
-    const int n = t.samples();
-    const double t0 = t.time[0], span = t.time[n - 1] - t0;
-    const Eigen::VectorXd x = input.empty() ? Eigen::VectorXd::Zero(n) : t.at(input);
-    const double range = std::max(x.maxCoeff() - x.minCoeff(), 1e-300);
-    std::map<std::pair<std::string, int>, double> excess;
-    for (int k = 0; k < n; ++k) {
-      const double rate = k > 0 ? (x[k] - x[k - 1]) / range / std::max((t.time[k] - t.time[k - 1]) / span, 1e-300) : 0.0;
-      const double away = std::abs(x[k]) - (k > 0 ? std::abs(x[k - 1]) : 0.0);
-      std::string phase = std::abs(rate) < 0.02 ? (std::abs(x[k]) < 0.05 * range ? "rest" : "hold") : away >= 0 ? "load" : "unload";
-      if (input.empty()) phase = "hold";
-      for (std::size_t c = 0; c < base.residual[i].size(); ++c) {
-        const double r = base.residual[i][c][k];
-        if (std::isfinite(r)) excess[{phase, std::min(3, static_cast<int>(4.0 * (t.time[k] - t0) / span))}] += std::pow(r / noise.output[c].sigma, 2) - 1.0;
-      }
-    }
-    for (const auto& [key, value] : excess) {
-      if (value <= 0) continue;
-      char text[80];
-      std::snprintf(text, sizeof text, "%.4g s <= t <= %.4g s", t0 + 0.25 * key.second * span, t0 + 0.25 * (key.second + 1) * span);
-      cells.push_back({t.file, key.first, text, value});
-      total += value;
-    }
-  }
-  std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.share > b.share; });
-  for (Cell& c : cells) c.share /= total;
-  return cells;
 }
 
 std::vector<Term> describe(const RigModel& model, const Fit& base) {

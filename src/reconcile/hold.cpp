@@ -9,10 +9,13 @@
 #include <cmath>
 #include <map>
 
+#include "base/rng.h"
 #include "reconcile/search.h"
 
 namespace filum::reconcile {
 namespace {
+
+constexpr HoldRules kRules;
 
 struct Spectrum {
   std::vector<double> frequency, power;  // [Hz], periodogram over the white level: mean 1
@@ -120,7 +123,7 @@ double squared_rms(const std::vector<Spectrum>& all, double low, double high, do
 
 void add_line(const Fitter& fitter, const Fit& base, const Form& form, double low, double high, const std::vector<Spectrum>& all, std::vector<Found>& found) {
   const Line line = strongest_line(fitter, base, low, high);
-  if (line.gain < line.columns + 4.5 * std::sqrt(2.0 * line.columns) + 14.0) return;
+  if (line.gain < line.columns + kRules.line_spread * std::sqrt(2.0 * line.columns) + kRules.line_gain) return;
   // at the edge of its band it is the skirt of what lies beyond
   if (form.effect == Effect::pulsation && std::min(line.frequency - low, high - line.frequency) < all[0].step) return;
   const double w = 2.5 * all[0].step;
@@ -129,7 +132,7 @@ void add_line(const Fitter& fitter, const Fit& base, const Form& form, double lo
   if (at > 0.5 * rate) at = rate - at;
   const double around = level(all, std::max(0.05, at - 12 * w), at + 12 * w);
   const Band narrow = band(all, at - w, at + w, around), wide = band(all, std::max(0.0, at - 10 * w), at + 10 * w, around);
-  if (narrow.excess < 0.6 * wide.excess) return;  // a band, not a line
+  if (narrow.excess < kRules.line_share * wide.excess) return;  // a band, not a line
   found.push_back({form.effect, &form, at - w, at + w, line.frequency, squared_rms(all, at - w, at + w, around), line.gain, narrow.bins});
 }
 
@@ -336,8 +339,47 @@ bool clipped(const Eigen::VectorXd& y) {
   for (const double v : y)
     if (std::isfinite(v)) ++counts[v];
   if (counts.size() < 12) return false;
-  const auto edge = [&](int first, int second) { return first >= 6 && first > 0.01 * static_cast<double>(y.size()) && first > 4 * std::max(1, second); };
+  const auto edge = [&](int first, int second) { return first >= kRules.clipped_least && first > kRules.clipped_share * static_cast<double>(y.size()) && first > kRules.clipped_times * std::max(1, second); };
   return edge(counts.rbegin()->second, std::next(counts.rbegin())->second) || edge(counts.begin()->second, std::next(counts.begin())->second);
+}
+
+/// Share of 30 resamplings of the records (with their outputs together) in which the same octave has most power left.
+double stability(const std::vector<Spectrum>& all, const std::vector<Found>& found, const Band& left, std::size_t outputs) {
+  constexpr int kRounds = 30;
+  Rng rng(20261123);
+  int same = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Spectrum> drawn;
+    for (std::size_t i = 0; i < all.size() / outputs; ++i) {
+      const auto from = all.begin() + static_cast<std::ptrdiff_t>(outputs * rng.below(all.size() / outputs));
+      drawn.insert(drawn.end(), from, from + static_cast<std::ptrdiff_t>(outputs));
+    }
+    const Band again = leftover(drawn, found);
+    same += again.low < left.high && again.high > left.low && std::abs(std::log(again.low / left.low)) < 0.1 ? 1 : 0;
+  }
+  return same / static_cast<double>(kRounds);
+}
+
+/// Power [m2] above the background that each record has between two frequencies.
+void add_cells(const Dataset& d, const std::vector<Spectrum>& all, double low, double high, double background, std::vector<Cell>& cells) {
+  std::size_t next = 0;
+  for (const Trial& t : d.trials) {
+    if (t.hold_out) continue;
+    const std::vector<Spectrum> own(all.begin() + static_cast<std::ptrdiff_t>(next), all.begin() + static_cast<std::ptrdiff_t>(next + d.outputs.size()));
+    next += d.outputs.size();
+    char text[60];
+    std::snprintf(text, sizeof text, "%.3g Hz <= f <= %.3g Hz", low, high);
+    cells.push_back({t.file, "hold", text, squared_rms(own, low, high, background)});
+  }
+}
+
+/// Powers into shares of their sum, the largest first.
+void share_out(std::vector<Cell>& cells) {
+  double sum = 1e-300;
+  for (const Cell& c : cells) sum += c.share;
+  for (Cell& c : cells) c.share /= sum;
+  std::erase_if(cells, [](const Cell& c) { return c.share <= 0.0; });
+  std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.share > b.share; });
 }
 
 double closing_frequency(const std::vector<Spectrum>& all, const Band& b) {
@@ -385,7 +427,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   // heart and breath are one effect: the stronger gives the numbers
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
   const bool alias = std::any_of(found.begin(), found.end(), [&](const Found& f) { return f.effect == Effect::mains_hum && f.low < t.high && f.high > t.low; });
-  if (fast && !alias && t.evidence > 25.0 && t.mean > 1.15 * t.background && t.top_share < 0.8 && t.centre > 7.6 && t.centre < 12.4)
+  if (fast && !alias && t.evidence > kRules.tremor_gain && t.mean > kRules.tremor_power * t.background && t.top_share < kRules.tremor_top && t.centre > kRules.tremor_low && t.centre < kRules.tremor_high)
     found.push_back({Effect::physiological_tremor, nullptr, t.low - 0.6, t.high + 0.6, closing_frequency(all, t), tremor_power(spectra(model, without_lines(d, fitted, found), stated, false), t), t.evidence, t.bins});
   for (std::size_t c = 0; c < d.outputs.size(); ++c)
     for (const Trial& trial : d.trials)
@@ -406,7 +448,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     r.tried.push_back({{Effect::physiological_tremor}, "", -t.evidence, 0.0, false, "no band of random phase between 8 and 12 Hz stands out enough"});
   const Band left = leftover(spectra(model, without_lines(d, base, found), stated, false), found);
   const double detrended = std::sqrt(squared_rms(all, left.low, left.high, 1.0));
-  const bool unexplained = left.evidence > 45.0 && left.mean > 1.25 && detrended > r.rules.materiality * model.full_scale(d.outputs[0]);
+  const bool unexplained = left.evidence > kRules.left_gain && left.mean > kRules.left_power && detrended > r.rules.materiality * model.full_scale(d.outputs[0]);
   r.fit = gap_in(all, found);
   r.held_out = held.empty() ? r.fit : gap_in(held, found);
   r.held_out_how = held.empty() ? "no trial is held out: the same bands on the fitted ones" : "trials marked hold_out";
@@ -419,7 +461,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     for (const Found& f : found) named_power += f.power;
     return named_power / std::max(1e-300, named_power + (unexplained ? detrended * detrended : 0.0));
   }();
-  if (!r.effects.empty() && (share > 0.3 || found.empty())) {
+  if (!r.effects.empty() && (share > kRules.named_share || found.empty())) {
     r.verdict = "effect";
     std::string list;
     for (const NamedEffect& e : r.effects) list += (list.empty() ? "" : " + ") + info(e.effect).name;
@@ -435,18 +477,16 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     r.verdict = "agree";
     r.sentence = "A still tip, a slow drift and white noise explain the records.";
   }
-  if (r.verdict != "agree")
-    for (const Found& f : found) {
-      char text[60];
-      std::snprintf(text, sizeof text, "%.3g Hz <= f <= %.3g Hz", f.low, f.high);
-      r.where.push_back({d.trials[0].file, "hold", text, 1.0 / static_cast<double>(found.size())});
-    }
+  if (r.verdict == "effect")
+    for (const Found& f : found) add_cells(d, all, f.low, f.high, level(all, std::max(0.05, f.low - 3.0), f.high + 3.0), r.where);
   if (r.verdict == "unknown") {
+    add_cells(d, all, left.low, left.high, 1.0, r.where);
     char text[60];
     std::snprintf(text, sizeof text, "%.3g Hz <= f <= %.3g Hz", left.low, left.high);
-    r.where.push_back({d.trials[0].file, "hold", text, 1.0});
-    r.shape.push_back({text, left.mean, 1.0});
+    r.shape.push_back({text, left.mean, stability(spectra(model, without_lines(d, base, found), stated, false), found, left, d.outputs.size())});
   }
+  share_out(r.where);
+  if (r.verdict != "agree") r.where_by = localise_by(model, fitted, noise);
   return r;
 }
 

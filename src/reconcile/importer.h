@@ -6,7 +6,7 @@
 
 namespace filum::reconcile {
 
-/// Kinds that import knows: brain-budday2017, muscle-vanloocke.
+/// Kinds that import knows: brain-budday2017, muscle-vanloocke, loadcells-fareke.
 std::vector<std::string> import_kinds();
 /// Writes one or more dataset folders below `out` and returns their names. Throws InputError.
 std::vector<std::string> import_data(const std::string& kind, const std::string& folder, const std::string& out);

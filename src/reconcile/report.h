@@ -12,6 +12,8 @@ nlohmann::ordered_json report_json(const Dataset& d, const Result& r);
 std::string report_html(const Dataset& d, const Result& r, const std::string& program);
 std::string model_yaml(const Dataset& d, const Result& r, const std::string& program);
 
+/// The rules that this rig's verdict went by.
+std::vector<RuleText> rules_of(const Dataset& d, const Result& r);
 /// Writes all files of a result into a folder, made if need be.
 void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program);
 void write_whole(const std::string& path, const std::string& text);

@@ -86,6 +86,8 @@ std::string protocol_of(const Trial& t) {
 /// Measured, before and after of one output of one record, over time or over an input.
 std::string record_plot(const Dataset& d, const Result& r, std::size_t i, std::size_t c, const Channel* input) {
   const Trial& t = d.trials[i];
+  const bool held = r.before.predicted[i].empty();
+  const Fit &before = held ? r.held_before : r.before, &after = held ? r.held_after : r.after;
   const Channel& out = d.channel(d.outputs[c]);
   const Eigen::VectorXd x = input == nullptr ? t.time : written(*input, t.at(input->name));
   std::vector<Curve> lines;
@@ -94,10 +96,10 @@ std::string record_plot(const Dataset& d, const Result& r, std::size_t i, std::s
     lines.push_back(std::move(band));
   }
   lines.push_back({x, written(out, t.at(d.outputs[c])), "#999", true, {}});
-  lines.push_back({x, written(out, r.before.predicted[i][c]), "#26c", false, {}});
+  lines.push_back({x, written(out, before.predicted[i][c]), "#26c", false, {}});
   const bool named = r.verdict == "effect" || r.verdict == "ambiguous";
-  if (named && i < r.after.predicted.size() && !r.after.predicted[i].empty()) lines.push_back({x, written(out, r.after.predicted[i][c]), "#c22", false, {}});
-  return plot({input == nullptr ? t.file + ": " + protocol_of(t) : protocol_of(t), input != nullptr ? axis(*input) : t.clocked ? "time [s]" : "sample", axis(out)}, lines);
+  if (named && i < after.predicted.size() && !after.predicted[i].empty()) lines.push_back({x, written(out, after.predicted[i][c]), "#c22", false, {}});
+  return plot({input == nullptr ? t.file + ": " + protocol_of(t) + (held ? " (held out)" : "") : protocol_of(t), input != nullptr ? axis(*input) : t.clocked ? "time [s]" : "sample", axis(out)}, lines);
 }
 
 void curves(const Dataset& d, const Result& r, std::ostringstream& s) {
@@ -115,8 +117,26 @@ void curves(const Dataset& d, const Result& r, std::ostringstream& s) {
     const bool first = seen.insert(d.protocol_text(d.trials[i])).second;
     if (first && input != nullptr && d.trials[i].has(input->name) && seen.size() <= 6) over += record_plot(d, r, i, 0, input);
   }
+  for (std::size_t i = 0; i < r.held_before.predicted.size() && i < d.trials.size(); ++i) {
+    if (!d.trials[i].hold_out || r.held_before.predicted[i].empty()) continue;
+    for (std::size_t c = 0; c < d.outputs.size() && drawn < 16; ++c, ++drawn) s << record_plot(d, r, i, c, nullptr);
+  }
   s << "</div>\n";
   if (!over.empty()) s << "<p>The same over " << escaped(input->name) << ", one record of each protocol.</p><div class='plots'>" << over << "</div>\n";
+}
+
+/// The same by single conditions: darker, the more of the excess sits there; bare where noise alone could do it.
+void heat_by(const Result& r, std::ostringstream& s) {
+  if (r.where_by.empty()) return;
+  s << "<p>The same by one condition at a time: share of what lies beyond the noise; in brackets what stands out by less than 4 standard deviations.</p><table class='by'>";
+  for (std::size_t i = 0; i < r.where_by.size(); ++i) {
+    const Share& w = r.where_by[i];
+    if (i == 0 || r.where_by[i - 1].axis != w.axis) s << (i == 0 ? "" : "</tr>\n") << "<tr><th scope='row'>" << escaped(w.axis) << "</th>";
+    const int shade = 255 - static_cast<int>(170 * std::clamp(w.share, 0.0, 1.0));
+    const std::string share = number(100 * w.share, 2) + " %";
+    s << "<td style='background:rgb(" << 255 - (255 - shade) / 3 << "," << shade << "," << shade << ")'>" << escaped(w.bin) << "<br>" << (w.deviations < 4.0 ? "(" + share + ")" : share) << "</td>";
+  }
+  s << "</tr></table>\n";
 }
 
 /// Mean residual of a stretch of a record over its standard error, before.
@@ -139,6 +159,7 @@ void heat(const Dataset& d, const Result& r, std::ostringstream& s) {
     }
   if (rows.empty()) return;
   s << "<h2>Where the baseline misses</h2><p>Mean residual of each fortieth of a record in standard errors; dark is 8 or more. Time runs to the right.</p>" << heat_map(rows, cells, 8.0);
+  heat_by(r, s);
   if (r.where.empty()) return;
   s << "<table>" << row({"record", "phase", "range", "share of the excess"}, "th");
   for (std::size_t i = 0; i < r.where.size() && i < 8; ++i) s << row({r.where[i].trial, r.where[i].phase, r.where[i].range, number(100 * r.where[i].share, 3) + " %"});
@@ -184,10 +205,13 @@ void checks(const Result& r, std::ostringstream& s) {
 void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
   s << "<h2>Gap</h2><p>Root-mean-square residual over the noise's standard deviation; 1 is perfect.</p><table>" << row({"", "before", "after"}, "th")
     << row({"fitted trials", number(r.fit.before, 3), number(r.fit.after, 3)}) << row({"held out (" + r.held_out_how + ")", number(r.held_out.before, 3), number(r.held_out.after, 3)}) << "</table><table>"
-    << row({"output", "noise, 1 sd", "from", "correlation of neighbours", "full scale"}, "th");
+    << row({"output", "noise, 1 sd", "from", "correlation of neighbours", "samples", "worth, if independent", "full scale"}, "th");
   for (std::size_t c = 0; c < r.noise.output.size(); ++c) {
     const OutputNoise& o = r.noise.output[c];
-    s << row({d.outputs[c], quantity(o.sigma, unit_of(d, d.outputs[c])), o.from, number(o.rho, 2), quantity(o.full_scale, unit_of(d, d.outputs[c]))});
+    double samples = 0;
+    for (const auto& trial : r.before.residual)
+      if (c < trial.size()) samples += static_cast<double>(std::count_if(trial[c].begin(), trial[c].end(), [](double v) { return std::isfinite(v); }));
+    s << row({d.outputs[c], quantity(o.sigma, unit_of(d, d.outputs[c])), o.from, number(o.rho, 2), number(samples), number(std::floor(samples * (1.0 - o.rho) / (1.0 + o.rho))), quantity(o.full_scale, unit_of(d, d.outputs[c]))});
   }
   s << "</table><p>Records of one batch differ in stiffness by " << number(100 * r.noise.scatter, 2) << " % (1 sd). Structure left in the residual: " << number(r.structure_before, 3) << " standard deviations before, "
     << number(r.structure_after, 3) << " after. Overdispersion used for all comparisons: " << number(r.dispersion, 3) << ".</p>\n<h2>Parameters</h2><table>" << (r.verdict == "effect" ? row({"parameter", "baseline alone", "with the effect"}, "th") : row({"parameter", "baseline"}, "th"));
@@ -204,15 +228,32 @@ void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
   if (r.verdict == "effect")
     for (const NamedEffect& e : r.effects)
       for (const Estimate& p : e.parameters) s << row({info(e.effect).name + ": " + p.name, "-", interval(p)});
-  s << "</table><p>Intervals are 95 %.</p>\n<h2>Everything that was tried</h2><table>" << row({"effects", "form", "evidence", "explains", "why not"}, "th");
+  s << "</table><p>Intervals are 95 %.</p>\n<h2>Everything that was tried</h2>";
+  if (!r.screened.empty()) {
+    s << "<p>Screened, instruments as well as materials: the fall of chi-squared that a score test of the baseline's residual promises each effect, against the noise as measured; lines of free phase are judged in the spectrum.</p><table>" << row({"effect", "promise", "hidden by a refit", "what came of it"}, "th");
+    for (const Screened& x : r.screened) s << row({info(x.effect).name, number(x.gain, 3), std::isfinite(x.masked) ? number(100 * x.masked, 3) + " %" : "-", x.what});
+    s << "</table><p>Sets that were fitted:</p>";
+  }
+  s << "<table>" << row({"effects", "form", "evidence", "explains", "why not"}, "th");
   for (const Tried& t : r.tried) s << row({names(t.effects), t.form, number(-t.evidence, 4), number(100 * t.explained, 3) + " %", t.why});
   s << "</table><p>Evidence: fall of the Bayesian information criterion against the baseline; a difference below " << number(r.rules.tie) << " is a tie.</p>\n";
 }
 
 void residual_after(const Dataset& d, const Result& r, std::ostringstream& s) {
-  for (std::size_t i = 0; i < r.after.residual.size(); ++i) {
-    if (r.after.residual[i].empty()) continue;
-    const Eigen::VectorXd& v = r.after.residual[i][0];
+  // the output and record of which most is left
+  double most = -1.0;
+  std::size_t record = 0, output = 0;
+  for (std::size_t i = 0; i < r.after.residual.size(); ++i)
+    for (std::size_t c = 0; c < r.after.residual[i].size(); ++c) {
+      double sum = 0.0, n = 1e-300;
+      for (const double x : r.after.residual[i][c])
+        if (std::isfinite(x)) sum += x * x, n += 1.0;
+      if (const double left = sum / n / std::pow(r.noise.output[c].sigma, 2); left > most) most = left, record = i, output = c;
+    }
+  if (most < 0.0) return;
+  {
+    const std::size_t i = record;
+    const Eigen::VectorXd& v = r.after.residual[i][output];
     const Eigen::Index lags = std::min<Eigen::Index>(60, v.size() / 4);
     Eigen::VectorXd x(lags), a(lags);
     const auto product = [&](Eigen::Index lag) {
@@ -237,16 +278,22 @@ void residual_after(const Dataset& d, const Result& r, std::ostringstream& s) {
       f[k] = static_cast<double>(k + 1) / span;
       p[k] = std::log10(std::max((re * re + im * im) / static_cast<double>(v.size()), 1e-300));
     }
-    s << "<h2>What is left afterwards</h2><div class='plots'>" << plot({"autocorrelation, " + d.trials[i].file, "lag [samples]", "correlation"}, {{x, a, "#444", false, {}}})
-      << plot({"spectrum, " + d.trials[i].file, "frequency [Hz]", "log10 power"}, {{f, p, "#444", false, {}}}) << "</div>\n";
-    return;
+    s << "<h2>What is left afterwards</h2><p>Of the record of which most is left: " << number(std::sqrt(most), 3) << " standard deviations of the noise.</p><div class='plots'>" << plot({"autocorrelation, " + d.trials[i].file + ", " + d.outputs[output], "lag [samples]", "correlation"}, {{x, a, "#444", false, {}}})
+      << plot({"spectrum, " + d.trials[i].file + ", " + d.outputs[output], "frequency [Hz]", "log10 power"}, {{f, p, "#444", false, {}}}) << "</div>\n";
   }
+}
+
+/// A term with the output's own name.
+std::string in_words(const Dataset& d, std::string term) {
+  if (const std::size_t at = term.find("output"); at != std::string::npos) term.replace(at, 6, d.outputs[0]);
+  return term;
 }
 
 void closing(const Dataset& d, const Result& r, const std::string& program, std::ostringstream& s) {
   if (!r.shape.empty()) {
-    s << "<h2>Shape of what is not explained</h2><p>Sparse regression of the residual, in parts of full scale, on terms scaled to 1; stability is the share of 30 resamplings that chose the term.</p><table>" << row({"term", "coefficient", "stability"}, "th");
-    for (const Term& t : r.shape) s << row({t.name, number(t.coefficient, 3), number(t.stability, 2)});
+    if (d.rig == Rig::tip_hold) s << "<h2>Shape of what is not explained</h2><p>The octave of the spectrum with most power beside what is named; stability is the share of 30 resamplings of the records that chose it.</p><table>" << row({"band", "times the noise's power", "stability"}, "th");
+    else s << "<h2>Shape of what is not explained</h2><p>Sparse regression of the residual, in parts of full scale, on terms scaled to 1; stability is the share of 30 resamplings that chose the term.</p><table>" << row({"term", "coefficient", "stability"}, "th");
+    for (const Term& t : r.shape) s << row({in_words(d, t.name), number(t.coefficient, 3), number(t.stability, 2)});
     s << "</table>\n";
   }
   if (r.verdict == "ambiguous") {
@@ -264,21 +311,14 @@ void closing(const Dataset& d, const Result& r, const std::string& program, std:
     s << "</table>\n";
   }
   s << "<h2>Rules</h2><table>" << row({"rule", "value"}, "th");
-  const Rules& k = r.rules;
-  for (const auto& [name, value] : std::vector<std::pair<std::string, double>>{{"material change, share of full scale", k.materiality}, {"the same in an eighth of a record", k.window_materiality},
-       {"chance of noise alone to detect", k.detect_p}, {"fall of chi-squared to detect", k.detect}, {"residual structure that proves a gap, sd", k.structure}, {"fall of BIC to accept", k.accept_evidence}, {"share of the gap to be explained", k.explained},
-       {"the same on held-out protocols", k.held_out}, {"tie, BIC", k.tie}, {"tie of a rival that these trials could not show", k.aside_tie}, {"tie of a name whose deciding protocol was not run", k.untestable_tie},
-       {"by which another form must beat the catalogue's, BIC", k.form_preference}, {"effects at most", k.most_effects}, {"a further effect: BIC", k.pair_evidence}, {"a further effect: share of the gap, or", k.pair_share},
-       {"this share", k.pair_least}, {"with a change of the prediction, times what is material, of", k.pair_material}, {"or this share (change twice that)", k.pair_clean}, {"if it takes of what is left", k.pair_rest},
-       {"or of its gain from samples where the others are silent", k.silent_share}, {"which are at least this part", k.silent_least}, {"partial: sd left", k.partial_structure}, {"partial: share left", k.partial_share},
-       {"partial: gain error asked for", k.gain_most}, {"masked share that hides an effect", k.masked}, {"squared signal to noise that shows one", k.testable}, {"effects screened at most", k.screen_most},
-       {"with a share of the best score of", k.screen_share}})
-    s << row({name, number(value)});
+  for (const auto& [text, value] : rules_of(d, r)) s << row({text, number(value)});
   s << "</table>\n";
   auto hardware = check_units(d, r.baseline);
   for (const HardwareCheck& h : check_hardware(d)) hardware.push_back(h);
-  if (!hardware.empty()) {
-    s << "<h2>What the records say of the hardware</h2><table>" << row({"check", "where", "found"}, "th");
+  s << "<h2>What the records say of the hardware</h2>";
+  if (hardware.empty()) s << "<p>Clock, gaps, frozen samples, steps of the converter, clipped tops and units were looked at: nothing was found.</p>\n";
+  else {
+    s << "<table>" << row({"check", "where", "found"}, "th");
     for (const HardwareCheck& h : hardware) s << row({h.what, h.where, h.found});
     s << "</table>\n";
   }
@@ -298,7 +338,7 @@ std::string report_html(const Dataset& d, const Result& r, const std::string& pr
   std::ostringstream s;
   s << "<!doctype html><html lang='en'><meta charset='utf-8'><meta name='viewport' content='width=device-width'><title>" << escaped(d.title) << "</title><style>"
     << "body{font:16px/1.5 Georgia,serif;max-width:52rem;margin:2rem auto;padding:0 1rem;color:#222}h1{font-size:1.6rem}h2{font-size:1.15rem;margin-top:2rem}table{border-collapse:collapse;font-size:.9rem;margin:.6rem 0}"
-    << "td,th{border-bottom:1px solid #ddd;padding:.2rem .7rem .2rem 0;text-align:left;vertical-align:top}.verdict{border-left:4px solid #c22;padding:.4rem 1rem;background:#faf6f4}.small,svg text{font:11px sans-serif}"
+    << "td,th{border-bottom:1px solid #ddd;padding:.2rem .7rem .2rem 0;text-align:left;vertical-align:top}.verdict{border-left:4px solid #c22;padding:.4rem 1rem;background:#faf6f4}.by td{min-width:5.5rem;padding:.2rem .5rem;font-size:.8rem}.small,svg text{font:11px sans-serif}"
     << ".plots{display:flex;flex-wrap:wrap;gap:.5rem}svg{max-width:100%}</style>\n<h1>" << escaped(d.title) << "</h1><p>" << info(d.rig).name << ", " << d.trials.size() << " trials, model " << escaped(d.model)
     << (d.source.empty() ? "" : "; source: " + escaped(d.source)) << "</p>\n<p class='verdict'><b>" << r.verdict << (r.partial ? ", partial" : "") << ".</b> ";
   if (r.verdict == "effect")

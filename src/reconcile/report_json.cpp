@@ -63,6 +63,8 @@ Json noise_json(const Dataset& d, const Result& r) {
 
 }  // namespace
 
+std::vector<RuleText> rules_of(const Dataset& d, const Result& r) { return d.rig == Rig::tip_hold ? listed(HoldRules{}, r.rules) : listed(r.rules); }
+
 Json report_json(const Dataset& d, const Result& r) {
   Json j = {{"format", "filum-reconcile/1"}, {"dataset", d.name}, {"rig", info(d.rig).name}, {"verdict", r.verdict}};
   Json effects = Json::array();
@@ -78,6 +80,9 @@ Json report_json(const Dataset& d, const Result& r) {
   for (std::size_t i = 0; i < r.where.size() && i < 12; ++i)
     where.push_back({{"trial", r.where[i].trial}, {"phase", r.where[i].phase}, {"range", r.where[i].range}, {"share", finite(r.where[i].share)}});
   j["where"] = where;
+  Json by = Json::array();
+  for (const Share& w : r.where_by) by.push_back({{"axis", w.axis}, {"bin", w.bin}, {"share", finite(w.share)}, {"deviations", finite(w.deviations)}});
+  j["where_by"] = by;
   Json hidden = Json::array();
   for (const NotTestable& n : r.not_testable) hidden.push_back({{"effect", info(n.effect).name}, {"why", n.why}, {"needs", n.needs}});
   j["not_testable"] = hidden;
@@ -93,6 +98,12 @@ Json report_json(const Dataset& d, const Result& r) {
   Json tried = Json::array();
   for (const Tried& t : r.tried) tried.push_back({{"effects", names(t.effects)}, {"form", t.form}, {"evidence", finite(-t.evidence)}, {"explained", finite(t.explained)}, {"why", t.why}});
   j["tried"] = tried;
+  Json screened = Json::array();
+  for (const Screened& x : r.screened) screened.push_back({{"effect", info(x.effect).name}, {"form", x.form}, {"promised", finite(x.gain)}, {"masked", finite(x.masked)}, {"what", x.what}});
+  j["screened"] = screened;
+  Json rules = Json::array();
+  for (const RuleText& x : rules_of(d, r)) rules.push_back({{"rule", x.text}, {"value", x.value}});
+  j["rules"] = rules;
   if (r.verdict == "ambiguous") j["ambiguity"] = {{"correlation", finite(r.correlation)}, {"masked", finite(r.masked)}};
   if (r.detection)
     j["detection"] = {{"statistic", finite(r.detection->statistic)}, {"score", finite(r.detection->score)}, {"p", r.detection->p}, {"chance", r.detection->chance}, {"repetitions", r.detection->repetitions}, {"excess", finite(r.detection->excess)},

@@ -32,9 +32,25 @@ struct Tried {
   std::string why;
 };
 
+/// What the score test said of an effect, and what came of it.
+struct Screened {
+  Effect effect;
+  std::string form;        // that of the best start
+  double gain = 0.0;       // fall of chi2 that it promises, against the noise as measured; NaN: a line, judged in the spectrum
+  double masked = 0.0;     // share of its signature that a refit of the baseline hides
+  std::string what;        // fitted, or why not
+};
+
 struct Cell {
   std::string trial, phase, range;
   double share = 0.0;
+};
+
+/// One bin of one axis (trial, output, phase, strain or input, rate, cycle, frequency): its part of what lies beyond the noise, and by how many standard
+/// deviations of noise alone it does.
+struct Share {
+  std::string axis, bin;
+  double share = 0.0, deviations = 0.0;
 };
 
 struct Gap {
@@ -87,6 +103,8 @@ struct Result {
   Gap fit, held_out;
   std::string held_out_how;
   std::vector<Cell> where;
+  std::vector<Share> where_by;
+  std::vector<Screened> screened;   // every effect of the rig by the score test of the baseline's residual
   std::vector<NotTestable> not_testable;
   std::optional<NextExperiment> next;
   std::optional<Confirmation> confirmation;
@@ -98,6 +116,7 @@ struct Result {
   double correlation = 0.0;         // of the signatures of the first two rivals
   double masked = 0.0;              // share of the first rival's signature that a refit of the baseline hides
   Fit before, after;                // for the plots
+  Fit held_before, held_after;      // the same of trials marked hold_out; empty without them
   std::vector<Form> forms;          // owned here, since fits point to them
   Rules rules;
   double seconds = 0.0;
@@ -120,6 +139,8 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
 
 // Parts, each usable alone.
 std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& noise);
+/// The same axis by axis: trial, output, phase, strain (or the input), rate, cycle, band of frequency. Axes on which there is one bin only are left out.
+std::vector<Share> localise_by(const RigModel& model, const Fit& base, const Noise& noise);
 Gap gap_of(const RigModel& model, const Noise& noise, const Fit& before, const Fit& after, const std::vector<bool>& trials);
 std::vector<Term> describe(const RigModel& model, const Fit& base);
 /// `evidence`: BIC of each rival (less is better); `tie`: by how much one must lead.

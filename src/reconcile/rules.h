@@ -2,6 +2,9 @@
 // Every number by which reconcile decides, in one place; printed in each report. Defaults follow reference/discovery.md 4.3;
 // what was changed on the development half is said beside it.
 
+#include <string>
+#include <vector>
+
 namespace filum::reconcile {
 
 struct Rules {
@@ -36,6 +39,40 @@ struct Rules {
   double testable = 16.0;            // squared signal to noise (noise 1 % of full scale) below which an effect cannot be seen
   double screen_share = 0.20;        // of the best score: effects below are not fitted
   int screen_most = 8;
+  double screen_least = 6.0;         // fall of chi2 that a score test must promise
+  double line_seen = 0.05;           // chance below which each of two lines that are named together must stand out
+  double line_folded = 6.0;          // cycles a record: where slow sampling folds hum to less, the record does not count for it
+  double line_price = 3.0;           // of BIC an amplitude of a line of free phase, in place of log n (search.cpp)
+  double overdispersed = 3.0;        // standard deviations of structure left in the best fit from which it counts as noise in all comparisons
+  double look_further = 3.5;         // standard deviations of structure left from which a further effect is looked for
+  double challenge = 4.0;            // standard deviations of the held-out misfit from which its fall is judged
+  double fold_unlearnt = 3.0;        // a protocol that the effect makes this much worse could not teach it, and does not count (of three or more)
+  double refit = 12.0;               // fall of chi2 a free parameter from which a refit within the prior is a verdict
 };
+
+/// tip-hold has no input: its effects are judged in the spectrum (hold.cpp).
+struct HoldRules {
+  double line_spread = 4.5;          // standard deviations of chi2 by which the strongest line of a band must beat what noise makes of one, and
+  double line_gain = 14.0;           // this much more
+  double line_share = 0.6;           // of the power about a line that must stand in it: less is a band
+  double tremor_gain = 25.0;         // twice the log likelihood that the tremor's band must bring
+  double tremor_power = 1.15;        // times the power around
+  double tremor_top = 0.8;           // of its power at most in one frequency of each record: more is a line
+  double tremor_low = 7.6, tremor_high = 12.4;  // [Hz], where its middle must lie
+  double clipped_least = 6.0;        // equal largest samples that are a clipped top, if they are
+  double clipped_share = 0.01;       // more than this share, and
+  double clipped_times = 4.0;        // more than this many times the samples at the next value
+  double left_gain = 45.0;           // twice the log likelihood of power that nothing explains,
+  double left_power = 1.25;          // times the noise's, if it is material
+  double named_share = 0.3;          // of the power that the names must hold beside it
+};
+
+/// One line of the report's table.
+struct RuleText {
+  std::string text;
+  double value;
+};
+std::vector<RuleText> listed(const Rules& rules);
+std::vector<RuleText> listed(const HoldRules& rules, const Rules& common);
 
 }  // namespace filum::reconcile

@@ -12,8 +12,6 @@
 namespace filum::reconcile {
 namespace {
 
-constexpr double kSeen = 0.05;  // p below which each of two lines that are named together must stand out
-
 std::set<Effect> set_of(const Fit& f) {
   std::set<Effect> s;
   for (const Form* form : f.forms) s.insert(form->effect);
@@ -87,7 +85,7 @@ Fit Search::separate(const Fit& from, double frequency) const {
     const double span = t.time[t.samples() - 1] - t.time[0], rate = (t.samples() - 1) / span;
     double folded = std::fmod(frequency, rate);
     folded = std::min(folded, rate - folded);
-    if (folded * span < 6.0) out.residual[i].clear();
+    if (folded * span < options_.rules.line_folded) out.residual[i].clear();
   }
   return out;
 }
@@ -126,7 +124,7 @@ double Search::line_p(const Form& form, const Fit& from) const {
   int columns = 0;
   for (std::size_t k = 0; k < form.params.size(); ++k) {
     const Line line = line_of(form, k, from);
-    if (places(form, k) * chi2_tail(line.gain, line.columns) > kSeen) return 1.0;
+    if (places(form, k) * chi2_tail(line.gain, line.columns) > options_.rules.line_seen) return 1.0;
     gain += line.gain;
     columns += line.columns;
     looks *= places(form, k);
@@ -168,7 +166,7 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
     if (!seen) {
       if (static_cast<int>(order.size()) >= most_effects) continue;
       if (order.size() >= 3 && s.gain < rules.screen_share * top) continue;
-      if (s.gain < 6.0) continue;
+      if (s.gain < rules.screen_least) continue;
       order.push_back(e);
     }
     auto& forms = used[e];
@@ -196,9 +194,8 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
 
 /// The amplitudes of a line stand for one strength and a phase in each record. Integrated over the phase, a record in which the line's
 /// signal to noise is S pays log(2 pi S^2), S^2 its fall of chi2; at the least that is named, 10 to 20 a record, that is 4 to 5 where BIC
-/// would ask 2 log n, some 13.
+/// would ask 2 log n, some 13 (half of log(2 pi S^2), with a margin, is the rule line_price).
 double Search::bic(const Fit& f) const {
-  constexpr double kAmplitude = 3.0;  // half of log(2 pi S^2), with a margin
   int lines = 0;
   int instants = 0;  // a change point costs as a parameter does, though no slope leads to it (Zhang & Siegmund 2007)
   for (const Form* form : f.forms) {
@@ -208,7 +205,7 @@ double Search::bic(const Fit& f) const {
   const auto records = std::count(fitter_.use.begin(), fitter_.use.end(), true);
   const double amplitudes = 2.0 * lines * static_cast<double>(records) * static_cast<double>(model_.data().outputs.size());
   const double each = std::log(static_cast<double>(f.samples));
-  return f.chi2 / dispersion_ + (f.parameters + instants - amplitudes) * each + amplitudes * std::min(kAmplitude, each);
+  return f.chi2 / dispersion_ + (f.parameters + instants - amplitudes) * each + amplitudes * std::min(options_.rules.line_price, each);
 }
 
 double Search::preference(const Fit& f) const {
@@ -259,14 +256,14 @@ void Search::refresh() {
   const Fit* least = &base_;
   for (const Fit& f : candidates_)
     if (f.chi2 < least->chi2) least = &f;
-  dispersion_ = structure(*least).z > 3.0 ? structure(*least).dispersion : 1.0;
+  dispersion_ = structure(*least).z > options_.rules.overdispersed ? structure(*least).dispersion : 1.0;
   dispersion_ = std::max(dispersion_, replicate_dispersion(fitter_, *least));
   keep({});
 }
 
 bool Search::worth_more(const Fit& f) const {
   const Structure s = structure(f);
-  if (s.z > 3.5) return true;
+  if (s.z > options_.rules.look_further) return true;
   const auto scores = Screen(fitter_, f).all(forms_);
   if (!scores.empty() && scores[0].gain / dispersion_ > options_.rules.pair_evidence) return true;
   return !lines(f).empty();
@@ -319,7 +316,7 @@ const Fit& Search::fullest() const {
 double Search::explained(const Fit& f) const {
   const Fit* least = &fullest();
   const Structure left = structure(*least);
-  const double rest = left.z > 3.0 ? left.excess : 0.0;
+  const double rest = left.z > options_.rules.overdispersed ? left.excess : 0.0;
   const double all = base_.chi2 - least->chi2 + rest;
   return all > 0.0 ? std::min(1.0, (base_.chi2 - f.chi2) / all) : 0.0;
 }

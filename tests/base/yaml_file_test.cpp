@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Bad{"empty", "", ":1"}, Bad{"scalar", "hello", ":1"}, Bad{"list", "[1, 2]", ":1"},
                     Bad{"twice", "a: 1\nb: 2\na: 3\n", ":3"}, Bad{"alias", "a: &x 1\nb: *x\n", ":1"},
                     Bad{"tag", "a: !!binary aGVsbG8=\n", ":1"}, Bad{"key", "? [a]\n: 1\n", ":1"},
-                    Bad{"open", "a: [1, 2\nb: 3\n", ":2"}, Bad{"tab", "a:\n\t- 1\n", ":2"},
+                    Bad{"open", "a: [1, 2\nb: 3\n", ":2:2"}, Bad{"tab", "a:\n\t- 1\n", ":2:2"},
                     Bad{"two", "a: 1\n---\nb: 1\n", ""}),
     [](const auto& info) { return std::string(info.param.what); });
 

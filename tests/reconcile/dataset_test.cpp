@@ -1,6 +1,9 @@
 #include "reconcile/dataset.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
 
 #include "base/error.h"
 #include "records.h"
@@ -87,6 +90,14 @@ TEST(Dataset, RefusesWithFileLineColumnAndExpectation) {
       {"text cell", block_yaml(kOne), with(four, "-0.2", "abc"), "a.csv:4: column u: found \"abc\", expected a finite number"},
       {"nan", block_yaml(kOne), with(four, "-3\n", "nan\n"), "a.csv:5: column F: found \"nan\""},
       {"decimal comma", block_yaml(kOne), with(four, "-0.2", "\"-0,2\""), "a.csv:4: column u"},
+      {"beyond all numbers", block_yaml(kOne), with(four, "-3\n", "1e300\n"), "a.csv:5: column F: found \"1e300\", expected a finite number with a dot below 1e30"},
+      {"lost dot", block_yaml(kOne), with(good, ",-5\n", ",-50000000\n"), "a sample less than a thousand times beyond all others"},
+      {"semicolons", block_yaml(kOne), "t;u;F\n0;0;0\n1;-0.1;-1\n", "a.csv:1: header: found columns t;u;F, expected a column named \"t\" (cells are separated by commas, and numbers have a dot)"},
+      {"tabs", block_yaml(kOne), "t\tu\tF\n0\t0\t0\n", "(cells are separated by commas, and numbers have a dot)"},
+      {"decimal commas", block_yaml(kOne), "t,u,F\n0,0,0\n1,-0,1,-1,5\n", "a.csv:3: row: found 5 cells, expected 3 as in the header (cells are separated by commas"},
+      {"both", block_yaml(kOne), "t;u;F\n0;0,0;0\n", "a.csv:2: row: found 2 cells, expected 1 as in the header (cells are separated by commas"},
+      {"broken YAML", with(block_yaml(kOne), "specimen: {", "specimen: {{"), good, "experiment.yaml:5:"},
+      {"unknown name", with(block_yaml(kOne), "[youngs_modulus]", "[beauty]"), good, "not \"beauty\": youngs_modulus"},
       {"time backwards", block_yaml(kOne), with(four, "2,-0.2", "0.5,-0.2"), "a.csv:4: column t: found \"0.5\", expected a time later"},
       {"no time", block_yaml(kOne), with(four, "\n2,", "\n,"), "a.csv:4: column t: found no time"},
       {"short row", block_yaml(kOne), with(four, "1,-0.1,-1", "1,-0.1"), "a.csv:3: row: found 2 cells, expected 3"},
@@ -117,11 +128,79 @@ TEST(Dataset, RefusesWithFileLineColumnAndExpectation) {
   }
 }
 
-TEST(Dataset, ConstantChannelIsNoticed) {
-  Folder f;
-  f.write("experiment.yaml", block_yaml(kOne));
-  f.write("a.csv", block_csv([](double, double, int) { return 3.0; }));
-  EXPECT_TRUE(says(load(f).notices[0], "channel force is constant"));
+TEST(Dataset, ConstantChannelsAreNoticedOrRefused) {
+  const std::string two = kOne + "  - { file: b.csv, protocol: { mode: compression, rate: \"0.1 mm/s\" } }\n";
+  const auto dead = [](double, double, int) { return 3.0; };
+  Folder one, both, still;
+  one.write("experiment.yaml", block_yaml(two));
+  one.write("a.csv", block_csv(dead));
+  one.write("b.csv", block_csv(linear));
+  EXPECT_TRUE(says(load(one).notices[0], "a.csv: channel force is constant"));
+  both.write("experiment.yaml", block_yaml(two));
+  both.write("a.csv", block_csv(dead));
+  both.write("b.csv", block_csv(dead));
+  EXPECT_TRUE(says(refusal(both), "a.csv: column F: found the same value in every row of every trial, expected an output that answers")) << refusal(both);
+  still.write("experiment.yaml", block_yaml(kOne));
+  still.write("a.csv", "t,u,F\n0,-0.1,1\n1,-0.1,1.5\n2,-0.1,1.4\n3,-0.1,1.6\n");
+  const Dataset d = load(still);
+  EXPECT_TRUE(std::any_of(d.notices.begin(), d.notices.end(), [](const std::string& n) { return says(n, "no input changes in any trial"); }));
+}
+
+TEST(Dataset, TheHashIsOfEverythingThatWasMeasuredAndSaid) {
+  const auto hash = [](const std::string& yaml, const std::string& csv) {
+    Folder f;
+    f.write("experiment.yaml", yaml);
+    f.write("a.csv", csv);
+    return load(f).hash;
+  };
+  const std::string yaml = block_yaml(kOne), csv = "t,u,F\n0,0,0\n1,-0.1,-1\n2,-0.2,-2\n3,-0.3,-3\n";
+  const auto with = [](std::string text, const std::string& a, const std::string& b) { return text.replace(text.find(a), a.size(), b); };
+  EXPECT_EQ(hash(yaml, csv), hash(yaml, csv));
+  for (const std::string& other : {with(csv, "-0.2,", "-0.21,"), with(csv, "-2\n", "-2.1\n"), with(csv, "\n2,", "\n2.1,")}) EXPECT_NE(hash(yaml, csv), hash(yaml, other)) << other;
+  EXPECT_NE(hash(yaml, csv), hash(with(yaml, "height: \"5 mm\"", "height: \"6 mm\""), csv));
+}
+
+/// A camera above a still hand sees two axes; three samples are no spectrum.
+TEST(Dataset, AStillHandNeedsTwoAxesAndEnoughSamples) {
+  const auto hand = [](int samples, bool still) {
+    std::ostringstream s;
+    s << "t,x,y,z\n";
+    for (int i = 0; i < samples; ++i) s << 0.01 * i << "," << (still ? 0.0 : std::sin(0.7 * i)) << "," << (still ? 0.0 : std::cos(0.3 * i)) << ",0\n";
+    return s.str();
+  };
+  const std::string yaml = "format: filum-experiment/1\ntitle: hand\nsource: test\nrig: tip-hold\nspecimen: { sensor: camera }\nmodel:\n  file: hand/still\nchannels:\n  - { name: time, column: t, unit: s }\n"
+                           "  - { name: x, column: x, unit: um, kind: output }\n  - { name: y, column: y, unit: um, kind: output }\n  - { name: z, column: z, unit: um, kind: output }\ntrials:\n  - { file: a.csv, protocol: { support: free } }\n";
+  Folder good, dead, few;
+  for (const Folder* f : {&good, &dead, &few}) f->write("experiment.yaml", yaml);
+  good.write("a.csv", hand(200, false));
+  dead.write("a.csv", hand(200, true));
+  few.write("a.csv", hand(5, false));
+  EXPECT_EQ(load(good).outputs, (std::vector<std::string>{"x", "y"}));
+  EXPECT_TRUE(says(refusal(dead), "the same value in every row of every trial")) << refusal(dead);
+  EXPECT_TRUE(says(refusal(few), "a.csv: rows: found 5, expected at least 64 samples")) << refusal(few);
+}
+
+/// What cannot be read as a file at all must neither hang nor fill the memory.
+TEST(Dataset, RefusesWhatIsNoFile) {
+  const auto of = [](const char* name, auto put) {
+    Folder f;
+    f.write("experiment.yaml", block_yaml(kOne));
+    f.write("a.csv", block_csv(linear));
+    std::filesystem::remove(f.file(name));
+    put(f.file(name));
+    return refusal(f);
+  };
+  const auto folder = [](const std::string& path) { std::filesystem::create_directory(path); };
+  const auto pipe = [](const std::string& path) { ASSERT_EQ(mkfifo(path.c_str(), 0600), 0); };
+  const auto device = [](const std::string& path) { std::filesystem::create_symlink("/dev/zero", path); };
+  const auto huge = [](const std::string& path) { std::ofstream(path) << "t,u,F\n", std::filesystem::resize_file(path, std::uintmax_t{3} << 30); };
+  EXPECT_TRUE(says(of("a.csv", folder), "a.csv: file: found a folder")) << of("a.csv", folder);
+  EXPECT_TRUE(says(of("a.csv", pipe), "a.csv: file: found a pipe")) << of("a.csv", pipe);
+  EXPECT_TRUE(says(of("a.csv", device), "a.csv: file: found a pipe or a device")) << of("a.csv", device);
+  EXPECT_TRUE(says(of("a.csv", huge), "a.csv: file: found more than 256 MiB")) << of("a.csv", huge);
+  EXPECT_TRUE(says(of("a.csv", [](const std::string&) {}), "a.csv: file: found no such file"));
+  EXPECT_TRUE(says(of("experiment.yaml", folder), "experiment.yaml: file: found a folder"));
+  EXPECT_TRUE(says(of("experiment.yaml", pipe), "experiment.yaml: file: found a pipe"));
 }
 
 TEST(Dataset, EveryRigAndEffectOfTheContractIsThere) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/rng.h"
 #include "records.h"
@@ -141,6 +142,24 @@ TEST(Workflow, WritesTheReportOfTheContract) {
   EXPECT_NE(page.find("<svg"), std::string::npos);
   EXPECT_EQ(page.find("http"), std::string::npos);  // opens without a network
   EXPECT_TRUE(std::filesystem::exists(f.file("out/model.yaml")));
+  // each stage is to be seen: what was screened and came to nothing, where by every axis, all rules
+  for (const char* heading : {"Measured, before and after", "Where the baseline misses", "Is anything missing?", "Numbers behind the fit", "Gap", "Parameters", "Everything that was tried", "What is left afterwards",
+                              "Not testable with these trials", "Rules", "What the records say of the hardware"})
+    EXPECT_NE(page.find(heading), std::string::npos) << heading;
+  std::set<std::string> screened, axes;
+  for (const auto& s : j["screened"]) screened.insert(s["effect"]);
+  for (const char* effect : {"viscoelastic-relaxation", "strain-stiffening", "sensor-lag", "mains-hum", "rig-compliance"}) EXPECT_TRUE(screened.count(effect)) << effect;
+  for (const auto& w : j["where_by"]) axes.insert(w["axis"]);
+  EXPECT_EQ(axes, (std::set<std::string>{"trial", "phase", "strain", "rate", "frequency"}));  // one output and one cycle: nothing to compare
+  EXPECT_EQ(j["rules"].size(), 38u);
+}
+
+TEST(Workflow, WhereNothingIsMissingTheSentenceSaysWhatWouldChangeIt) {
+  Folder f;
+  write_block(f, 0.0, 2);
+  const Result r = reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
+  EXPECT_EQ(r.verdict, "agree");
+  EXPECT_NE(r.sentence.find("An effect that lowers BIC by 10 and changes a record by 0.6 % of full scale would change this"), std::string::npos) << r.sentence;
 }
 
 TEST(Workflow, ThreadsDoNotChangeTheResult) {
