@@ -61,10 +61,12 @@ struct TubeWall {
 };
 /// Lame's motion of the outer face over the finite elements', incompressible, at vanishing pressure; `around`: elements of a turn. NaN if not found.
 double tube_linear_factor(const TubeWall& wall, int around);
+/// Axial force of the finite elements at a vanishing axial stretch over E (stretch - 1) A, incompressible. NaN if not found.
+double tube_axial_factor(const TubeWall& wall, int around);
 /// The pressure of a wall of this law and opening angle [rad] beyond that of rubber with its mu, less `reduced` [Pa] (C [m2], axial stretch), for motions
-/// up to `most` [m2] at one axial stretch or three. linear is NaN where an equilibrium was not found.
+/// up to `most` [m2] at one axial stretch or three; with `reduced_axial` [N] the same of the reduced axial force. linear is NaN where an equilibrium was not found.
 WallTable tube_table(const TubeWall& wall, const WallLaw& law, double opening, const std::vector<double>& stretches, double most,
-                     const std::function<double(double, double)>& reduced, int around);
+                     const std::function<double(double, double)>& reduced, int around, const std::function<double(double, double)>& reduced_axial = {});
 
 /// A linear incompressible wall whose elements each soften by their own past, less the reduced law of the whole wall (W0 over Young's modulus, energy
 /// (C/(a b))^2/2), for motions up to `most` [m2]; empty where an equilibrium was not found.

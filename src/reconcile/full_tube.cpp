@@ -1,7 +1,8 @@
 // vessel-inflation by the trainer's wall elements (physics/tube_slice): Hooke's law at vanishing strain for the linear part; for fibres, stiffening, tone
-// and the opening angle, alone or together, the pressure of a rubber wall that has them less that of one that has not, at equal motion and axial stretch,
-// as the reduced model adds them. Softening element by element (tube_softening) is not asked for in acceptance yet: its refit seems to swing. What acts equally on the whole wall (relaxation) or from outside (tethering: a pressure on an incompressible wall
-// moves it alike on either side) changes nothing in a slice but its load and stays the reduced model's.
+// and the opening angle, alone or together, the pressure (and, where it was measured, the axial force) of a rubber wall that has them less that of one that has
+// not, at equal motion and axial stretch, as the reduced model adds them. Softening element by element (tube_softening). What acts equally on the whole wall
+// (relaxation) or from outside (tethering: a pressure on an incompressible wall moves it alike on either side) changes nothing in a slice but its load and stays
+// the reduced model's.
 
 #include <algorithm>
 #include <cmath>
@@ -59,9 +60,13 @@ TubeSlice slice_of(const TubeWall& w, const WallLaw& law, double opening, double
   return s;
 }
 
-/// Motion C [m2] of the outer face without pressure and at each pressure, from where an unloaded wall of constant volume has it at this stretch; empty
-/// where an equilibrium was not found.
-std::vector<double> motions(const TubeSlice& s, std::vector<double> pressures) {
+struct Motion {
+  double C = 0.0, axial = 0.0;  // [m2], of the outer face; [N], the wall's axial force less that of the pressure on a closed end
+};
+
+/// Without pressure and at each pressure; C from where an unloaded wall of constant volume has its outer face at this stretch. Empty where an equilibrium was
+/// not found. A wall of flat elements carries its axial force over the cross-section of a polygon: given for the round one.
+std::vector<Motion> motions(const TubeSlice& s, std::vector<double> pressures) {
   pressures.insert(pressures.begin(), 0.0);
   const std::vector<SliceState> states = inflate(s, pressures);
   double first = states[0].outer, stretch = s.shape.stretch;
@@ -73,10 +78,12 @@ std::vector<double> motions(const TubeSlice& s, std::vector<double> pressures) {
     if (!rest.converged) return {};
     first = rest.outer;
   }
-  std::vector<double> out;
-  for (const SliceState& at : states) {
+  const double polygon = std::sin(kTurn / s.around) / (kTurn / s.around);
+  std::vector<Motion> out;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const SliceState& at = states[i];
     if (!at.converged || !std::isfinite(at.outer)) return {};
-    out.push_back(0.5 * (at.outer * at.outer - first * first / stretch));
+    out.push_back({0.5 * (at.outer * at.outer - first * first / stretch), (at.axial_force - pressures[i] * at.lumen) / polygon});
   }
   return out;
 }
@@ -93,11 +100,22 @@ double rubber_pressure(const TubeWall& w, double mu, double c, double stretch) {
   return sum * (ro - ri) / kPoints;
 }
 
-/// Finite elements over quadrature for rubber at motion c, straight between the states.
-double ratio(const std::vector<double>& C, const std::vector<double>& ratios, double c) {
+/// Reduced axial force of a rubber tube at motion c: pi int mu (2 (lz^2 - lr^2) - (l^2 - lr^2)) r dr, midpoint rule.
+double rubber_axial(const TubeWall& w, double mu, double c, double stretch) {
+  constexpr int kPoints = 400;
+  double sum = 0.0;
+  for (int i = 0; i < kPoints; ++i) {
+    const double R = w.inner + (w.outer - w.inner) * (i + 0.5) / kPoints, l2 = 1.0 / stretch + 2.0 * c / (R * R), radial = 1.0 / (l2 * stretch * stretch);
+    sum += mu * (2.0 * (stretch * stretch - radial) - (l2 - radial)) * R / stretch;
+  }
+  return sum * 0.5 * kTurn * (w.outer - w.inner) / kPoints;
+}
+
+/// Values of the states at motion c, straight between them.
+double between(const std::vector<double>& C, const std::vector<double>& values, double c) {
   const auto i = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(std::upper_bound(C.begin(), C.end(), c) - C.begin(), 1, static_cast<std::ptrdiff_t>(C.size()) - 1));
   const double w = (c - C[i - 1]) / (C[i] - C[i - 1]);
-  return (1.0 - w) * ratios[i - 1] + w * ratios[i];
+  return (1.0 - w) * values[i - 1] + w * values[i];
 }
 
 }  // namespace
@@ -107,35 +125,49 @@ double tube_linear_factor(const TubeWall& w, int around) {
   const double lame = 1.0 / (w.inner * w.inner) - 1.0 / (w.outer * w.outer), mu = 1e5;
   const double P = kSmall * 2.0 * mu * lame * w.inner * w.inner;
   const auto C = motions(slice_of(w, WallLaw::hooke(2.0 * mu * (1.0 + kPoisson), kPoisson), 0.0, 1.0, around), {P});
-  return C.empty() ? NAN : P / (2.0 * mu * lame * C[1]);
+  return C.empty() ? NAN : P / (2.0 * mu * lame * C[1].C);
+}
+
+double tube_axial_factor(const TubeWall& w, int around) {
+  constexpr double kPoisson = 0.4999, kSmall = 1e-4, kYoung = 3e5;  // [Pa]
+  TubeSlice slice = slice_of(w, WallLaw::hooke(kYoung, kPoisson), 0.0, 1.0 + kSmall, around);
+  const auto at = motions(slice, {0.0});
+  return at.empty() ? NAN : at[0].axial / (kYoung * kSmall * 0.5 * kTurn * (w.outer * w.outer - w.inner * w.inner));
 }
 
 namespace {
 
 bool is_rubber(const WallLaw& law) { return law.kind == WallLaw::Kind::neo_hookean && law.c20 == 0.0 && law.growth == 0.0 && law.tone.stress == 0.0; }
 
+using Reduced = std::function<double(double, double)>;
+
 /// One slice of the table; without points where an equilibrium was not found.
-WallTable::Slice table_slice(const TubeWall& w, const WallLaw& law, double opening, double stretch, double most, const std::function<double(double, double)>& reduced, int around) {
+WallTable::Slice table_slice(const TubeWall& w, const WallLaw& law, double opening, double stretch, double most, const Reduced& reduced, const Reduced& reduced_axial, int around) {
   WallLaw rubber;
   rubber.kind = WallLaw::Kind::neo_hookean;
   rubber.mu = law.mu, rubber.lambda = law.lambda;
-  std::vector<double> bare, full, ratios;
+  std::vector<double> bare, full, at, ratios, beside;
   for (int i = 1; i <= kStates; ++i) {
     const double c = 1.05 * most * i / kStates;
     bare.push_back(rubber_pressure(w, law.mu, c, stretch));
     full.push_back(bare.back() + reduced(c, stretch));
   }
-  auto with = motions(slice_of(w, law, opening, stretch, around), full), without = motions(slice_of(w, rubber, 0.0, stretch, around), bare);
+  const auto with = motions(slice_of(w, law, opening, stretch, around), full), without = motions(slice_of(w, rubber, 0.0, stretch, around), bare);
   if (with.empty() || without.empty()) return {};
-  without.erase(without.begin());
-  for (std::size_t i = 0; i < without.size(); ++i) ratios.push_back(bare[i] / rubber_pressure(w, law.mu, without[i], stretch));
+  for (std::size_t i = 1; i < without.size(); ++i) {  // what the mesh makes of rubber: pressure over quadrature's, axial force beside quadrature's
+    at.push_back(without[i].C);
+    ratios.push_back(bare[i - 1] / rubber_pressure(w, law.mu, without[i].C, stretch));
+    beside.push_back(without[i].axial - rubber_axial(w, law.mu, without[i].C, stretch));
+  }
   WallTable::Slice out;
   out.stretch = stretch;
   full.insert(full.begin(), 0.0);
   for (std::size_t i = 0; i < with.size(); ++i) {
-    if (i > 0 && with[i] <= with[i - 1]) return {};
-    out.C.push_back(with[i]);
-    out.beyond.push_back(full[i] - ratio(without, ratios, with[i]) * rubber_pressure(w, law.mu, with[i], stretch) - reduced(with[i], stretch));
+    const double C = with[i].C;
+    if (i > 0 && C <= with[i - 1].C) return {};
+    out.C.push_back(C);
+    out.beyond.push_back(full[i] - between(at, ratios, C) * rubber_pressure(w, law.mu, C, stretch) - reduced(C, stretch));
+    if (reduced_axial) out.axial.push_back(with[i].axial - rubber_axial(w, law.mu, C, stretch) - between(at, beside, C) - reduced_axial(C, stretch));
   }
   return out;
 }
@@ -143,12 +175,14 @@ WallTable::Slice table_slice(const TubeWall& w, const WallLaw& law, double openi
 }  // namespace
 
 WallTable tube_table(const TubeWall& w, const WallLaw& law, double opening, const std::vector<double>& stretches, double most,
-                     const std::function<double(double, double)>& reduced, int around) {
+                     const Reduced& reduced, int around, const Reduced& reduced_axial) {
   WallTable out;
   out.linear = tube_linear_factor(w, around);
+  if (reduced_axial) out.axial = tube_axial_factor(w, around);
+  if (!std::isfinite(out.axial)) out.linear = NAN;
   if ((is_rubber(law) && opening <= 0.0) || !std::isfinite(out.linear)) return out;
   for (const double stretch : stretches) {
-    out.slices.push_back(table_slice(w, law, opening, stretch, most, reduced, around));
+    out.slices.push_back(table_slice(w, law, opening, stretch, most, reduced, reduced_axial, around));
     if (out.slices.back().C.empty()) return out.linear = NAN, out;
   }
   return out;
@@ -262,7 +296,10 @@ class TubeSolver final : public FullSolver {
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
     const int around = fine ? 32 : 16;
-    WallTable made = tube_table(w, law, opening, stretches(), widest(w), [&](double C, double lz) { return model_.wall_pressure(t, own, C, lz); }, around);
+    const auto& outputs = model_.data().outputs;
+    Reduced axial;
+    if (std::find(outputs.begin(), outputs.end(), "axial_force") != outputs.end()) axial = [&](double C, double lz) { return model_.wall_axial_force(t, own, C, lz); };
+    WallTable made = tube_table(w, law, opening, stretches(), widest(w), [&](double C, double lz) { return model_.wall_pressure(t, own, C, lz); }, around, axial);
     if (const double* p = s.on(Effect::first_cycle_softening)) {
       made.softened = tube_softening(w, {static_cast<WallSoftening::Shape>(s.form(Effect::first_cycle_softening)), p[0], p[1]}, widest(w), around);
       if (made.softened.top.empty()) made.linear = NAN;

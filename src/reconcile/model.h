@@ -31,14 +31,15 @@ struct Form {
 
 /// A tube's pressure by finite elements against the reduced model's, at motions r'^2 = R^2/stretch + 2 C.
 struct WallTable {
-  double linear = 1.0;                 // factor of the linear part
+  double linear = 1.0, axial = 1.0;    // factors of the linear part: pressure, axial force
   struct Slice {
     double stretch = 1.0;              // along the axis
     std::vector<double> C, beyond;     // [m2] ascending, [Pa] to be added
-    double at(double c) const;         // [Pa], straight between them, beyond the last in proportion
+    std::vector<double> axial;         // [N] to be added to the reduced axial force; empty: not asked for
+    double at(double c, const std::vector<double>& of) const;  // straight between them, beyond the last in proportion
   };
   std::vector<Slice> slices;           // ascending in stretch; a parabola through three
-  double at(double c, double stretch) const;
+  double at(double c, double stretch, std::vector<double> Slice::*of = &Slice::beyond) const;
   /// Softening of the first cycles: the share of the stress that is left, less the reduced model's.
   struct Softened {
     std::vector<double> top, share;    // [m2] largest motions so far, ascending from 0; motion over the largest, ascending to 1
@@ -127,6 +128,8 @@ class RigModel {
   virtual Slide slide(const Trial&, const Setting&, Eigen::Index /*sample*/) const { return {}; }
   /// Pressure [Pa] that the effects of a tube's wall ask for beyond the linear law at motion C [m2] and a stretch along its axis.
   virtual double wall_pressure(const Trial&, const Setting&, double /*C*/, double /*stretch*/) const { return 0.0; }
+  /// The same for the reduced axial force [N]: the wall's less that of the pressure on a closed end.
+  virtual double wall_axial_force(const Trial&, const Setting&, double /*C*/, double /*stretch*/) const { return 0.0; }
 
   /// rig(), then the sensor.
   void simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const;

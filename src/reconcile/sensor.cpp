@@ -73,22 +73,22 @@ void apply_saturation(const Setting& s, Eigen::MatrixXd& out) {
 
 }  // namespace
 
-double WallTable::Slice::at(double c) const {
-  if (C.size() < 2) return 0.0;
-  if (c >= C.back()) return beyond.back() * c / C.back();
+double WallTable::Slice::at(double c, const std::vector<double>& of) const {
+  if (of.size() < 2) return 0.0;
+  if (c >= C.back()) return of.back() * c / C.back();
   const auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, std::upper_bound(C.begin(), C.end(), c) - C.begin()));
   const double w = (c - C[i - 1]) / (C[i] - C[i - 1]);
-  return (1.0 - w) * beyond[i - 1] + w * beyond[i];
+  return (1.0 - w) * of[i - 1] + w * of[i];
 }
 
-double WallTable::at(double c, double stretch) const {
-  if (slices.size() < 3) return slices.empty() ? 0.0 : slices[0].at(c);
+double WallTable::at(double c, double stretch, std::vector<double> Slice::*of) const {
+  if (slices.size() < 3) return slices.empty() ? 0.0 : slices[0].at(c, slices[0].*of);
   double sum = 0.0;
   for (const Slice& one : slices) {
     double weight = 1.0;
     for (const Slice& other : slices)
       if (&other != &one) weight *= (stretch - other.stretch) / (one.stretch - other.stretch);
-    sum += weight * one.at(c);
+    sum += weight * one.at(c, one.*of);
   }
   return sum;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/tube_slice.h"
 #include "reconcile/full_solver.h"
 
 namespace filum::reconcile {
@@ -83,6 +84,23 @@ double over_the_wall(double C, double stretch, const Stress& stress) {
   return sum;
 }
 
+/// Lame's wall held in plane strain carries 2 nu pi a^2 P along its axis, which is what P does on a closed end: nothing is left of it; stretched, E e A.
+TEST(FullTube, AxialForceOfTheLinearTubeIsLames) {
+  const double coarse = tube_axial_factor(kTube, 16), fine = tube_axial_factor(kTube, 32);
+  std::printf("axial force of a tube a little longer over E e A, 16 and 32 around: %.5f %.5f\n", coarse, fine);
+  EXPECT_NEAR(coarse, 1.0, 0.005);
+  EXPECT_NEAR(fine, 1.0, 0.002);
+  constexpr double kPoisson = 0.4999, E = 3e5, P = 3.0;
+  TubeSlice slice;
+  slice.shape.inner_radius = kTube.inner, slice.shape.thickness = kTube.outer - kTube.inner, slice.shape.length = 0.1e-3;
+  slice.around = 32, slice.through = 8;
+  slice.layers = {{"wall", slice.shape.thickness, WallLaw::hooke(E, kPoisson)}};
+  const SliceState at = inflate(slice, {P})[0];
+  ASSERT_TRUE(at.converged);
+  EXPECT_NEAR(at.axial_force / (2 * kPoisson * P * at.lumen), 1.0, 0.005);
+  EXPECT_NEAR(at.lumen / (std::numbers::pi * kTube.inner * kTube.inner), 1.0, 0.01);
+}
+
 TEST(FullTube, ExponentialStiffeningIsThatOfTheQuadrature) {
   WallLaw l = law(WallLaw::Kind::neo_hookean);
   l.growth = 6.0;
@@ -143,6 +161,55 @@ TEST(FullTube, StretchedTubeIsThatOfTheQuadrature) {
     for (const double beyond : s.beyond) worst = std::max(worst, std::abs(beyond) / exact(most, lz));
     std::printf("stretch %.2f: motion without pressure %.4f b^2, finite elements off the quadrature by %.4f of its most\n", lz, s.C[0] / (kTube.outer * kTube.outer), worst);
     EXPECT_LT(worst, 0.02);
+  }
+}
+
+/// pi int (2 s_z - s_theta) r dr at motion C and axial stretch, stresses less the radial one, of (stretch around, radial stretch) squared, midpoint rule.
+template <class Stress>
+double along_the_wall(double C, double lz, const Stress& stress) {
+  constexpr int kPoints = 1000;
+  double sum = 0.0;
+  for (int i = 0; i < kPoints; ++i) {
+    const double R = kTube.inner + (kTube.outer - kTube.inner) * (i + 0.5) / kPoints, l2 = 1 / lz + 2 * C / (R * R);
+    sum += stress(l2, 1 / (l2 * lz * lz)) * R / lz;
+  }
+  return sum * std::numbers::pi * (kTube.outer - kTube.inner) / kPoints;
+}
+
+/// The tube of StretchedTubeIsThatOfTheQuadrature, the force on its end less that of the pressure on a closed one.
+TEST(FullTube, AxialForceIsThatOfTheQuadrature) {
+  WallLaw l = law(WallLaw::Kind::fibres);
+  const double k1 = 40e3, k2 = 3.0, angle = 40.0 * std::numbers::pi / 180.0, c2 = std::pow(std::cos(angle), 2);
+  l.k1 = 0.25 * k1, l.k2 = 0.25 * k2, l.beta = angle;
+  l.c20 = 15e3;
+  const auto around = [&](double l2, double lz, double radial) {
+    const double e = std::max(0.5 * (c2 * (l2 - 1) + (1 - c2) * (lz * lz - 1)), 0.0);
+    return 2 * k1 * e * std::exp(k2 * e * e) * c2 * l2 + 4 * l.c20 * (l2 + lz * lz + radial - 3) * (l2 - radial);
+  };
+  const auto along = [&](double l2, double lz, double radial) {
+    const double e = std::max(0.5 * (c2 * (l2 - 1) + (1 - c2) * (lz * lz - 1)), 0.0);
+    return 2 * k1 * e * std::exp(k2 * e * e) * (1 - c2) * lz * lz + 4 * l.c20 * (l2 + lz * lz + radial - 3) * (lz * lz - radial);
+  };
+  const auto pressure = [&](double C, double lz) { return over_the_wall(C, lz, [&](double l2) { return around(l2, lz, 1 / (l2 * lz * lz)); }); };
+  const auto exact = [&](double C, double lz) { return along_the_wall(C, lz, [&](double l2, double radial) { return 2 * along(l2, lz, radial) - around(l2, lz, radial); }); };
+  const double most = 0.12 * kTube.outer * kTube.outer;
+  for (const double lz : {0.97, 1.0, 1.1}) {
+    double worst[2] = {0.0, 0.0}, size = 0.0;
+    for (int fine = 0; fine < 2; ++fine) {
+      const WallTable t = tube_table(kTube, l, 0.0, {lz}, most, pressure, fine ? 32 : 16, exact);
+      ASSERT_TRUE(std::isfinite(t.linear)) << lz;
+      const auto& s = t.slices[0];
+      ASSERT_EQ(s.axial.size(), s.C.size());
+      for (std::size_t i = 0; i < s.C.size(); ++i) {
+        // what pulls along the axis and what the stress around takes from it cancel in a tube that keeps its length: the larger counts
+        size = std::max(size, std::abs(along_the_wall(s.C[i], lz, [&](double l2, double radial) { return 2 * along(l2, lz, radial); })));
+        worst[fine] = std::max(worst[fine], std::abs(s.axial[i]));
+      }
+    }
+    std::printf("stretch %.2f: fibres and stiffening pull along the axis with up to %.3g mN, finite elements off the quadrature by %.4f and %.4f of it\n", lz, 1e3 * size, worst[0] / size, worst[1] / size);
+    EXPECT_GT(size, 5e-4);
+    EXPECT_LT(worst[0], 0.005 * size) << lz;
+    EXPECT_LT(worst[1], 0.002 * size) << lz;
   }
 }
 

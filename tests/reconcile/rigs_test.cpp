@@ -59,6 +59,45 @@ TEST(Rigs, VesselFollowsLame) {
   EXPECT_NEAR(run(d, {E})[2], 2e-3 + 2.0 * rise, 1e-12);
 }
 
+/// The axial force that effects add, by work: F = dW/dlz - (C/lz) dW/dC of a tube with a closed end, W the energy a length of the wall stores at r'^2 = R^2/lz + 2 C.
+TEST(Rigs, AxialForceOfAVesselIsTheWorkOfItsStretch) {
+  Dataset d = dataset(Rig::vessel_inflation, {"outer_diameter", "axial_force"});
+  Trial t = trial(3, 2.0);
+  const double a = 0.7e-3, b = 1e-3, E = 3e5;
+  t.specimen = {{"outer_diameter", 2 * b}, {"wall_thickness", b - a}};
+  t.data["pressure"] = Eigen::VectorXd::Constant(3, 1e4);
+  t.data["axial_stretch"] = Eigen::VectorXd::Constant(3, 1.1);
+  t.data["outer_diameter"] = Eigen::VectorXd::Constant(3, 2 * b);
+  t.data["axial_force"] = Eigen::VectorXd::Constant(3, 1e-2);
+  d.trials.push_back(t);
+  const auto model = make_model(d);
+  const std::vector<double> base = {E};
+  const double fibre[] = {4e4, 3.0, 0.7}, stiff[] = {0.6};
+  for (const bool fibres : {true, false})
+    for (int kind = 0; kind < 2; ++kind) {
+      Setting s;
+      s.base = base.data();
+      s.mesh = 4;
+      const Effect effect = fibres ? Effect::fibre_stiffening : Effect::strain_stiffening;
+      s.p[static_cast<std::size_t>(index_of(effect))] = fibres ? fibre : stiff;
+      s.kind[static_cast<std::size_t>(index_of(effect))] = kind;
+      const auto energy = [&](double C, double lz) {
+        double sum = 0.0;
+        for (int i = 0; i < 2000; ++i) {
+          const double R = a + (b - a) * (i + 0.5) / 2000, l2 = 1 / lz + 2 * C / (R * R), c2 = std::pow(std::cos(fibre[2]), 2);
+          const double e = 0.5 * (c2 * (l2 - 1) + (1 - c2) * (lz * lz - 1)), i1 = l2 + lz * lz + 1 / (l2 * lz * lz) - 3;
+          const double yeoh = E / 6 * stiff[0] * i1 * i1, exponential = E / 6 * (std::expm1(2 * stiff[0] * i1) / (2 * stiff[0]) - i1);
+          const double W = fibres ? (kind == 1 ? 1 : 2) * fibre[0] / (2 * fibre[1]) * std::expm1(fibre[1] * e * e) : kind == 0 ? yeoh : exponential;
+          sum += W * 2 * std::numbers::pi * R * (b - a) / 2000;
+        }
+        return sum;
+      };
+      const double C = 0.1 * b * b, lz = 1.1, h = 1e-5, g = 1e-5 * b * b;
+      const double force = (energy(C, lz + h) - energy(C, lz - h)) / (2 * h) - C / lz * (energy(C + g, lz) - energy(C - g, lz)) / (2 * g);
+      EXPECT_NEAR(model->wall_axial_force(d.trials[0], s, C, lz) / force, 1.0, 1e-5) << fibres << kind;
+    }
+}
+
 TEST(Rigs, CapstanFollowsEuler) {
   Dataset d = dataset(Rig::suture_pull, {"pull_force"});
   Trial t = trial(3, 2.0);
