@@ -133,14 +133,24 @@ const kThread = `fill="none" stroke="#12324a" stroke-width="2.6" stroke-linecap=
 const needle = (x: number, y: number, turn: number, size = 1): string =>
   `<g transform="translate(${x} ${y}) rotate(${turn}) scale(${size})"><path d="M-17 0A17 17 0 0 1 17 0" fill="none" stroke="#2b333b" stroke-width="4.2"/><path d="M-17 0A17 17 0 0 1 17 0" fill="none" stroke="#dfe5ea" stroke-width="2.8"/><path d="M15.4 0L17 8L18.6 0Z" fill="#dfe5ea"/></g>`;
 
-/// Two stumps in their clamps with a stitch across the gap; `turns`: of the thread in its knot, so far.
-function vesselPicture(label: string, colour: string, turns: number): SVGElement {
+/// Two stumps in their clamps, cut edges facing.
+function stumps(colour: string): string {
   const stump = (end: number) => `<g transform="scale(${end} 1)"><rect x="5" y="-17" width="60" height="34" fill="${colour}" stroke="#5b3a34" stroke-width=".8"/><rect x="5" y="-15" width="60" height="7" fill="#ffffff48"/>
     <ellipse cx="5" rx="4.5" ry="17" fill="#7c3b36" stroke="${colour}" stroke-width="2.4"/><path d="M40 -23H46V23H40Z" fill="#METAL" stroke="#2b333b" stroke-width=".6"/></g>`;
+  return stump(-1) + stump(1);
+}
+
+/// Two stumps in their clamps with a stitch across the gap; `turns`: of the thread in its knot, so far.
+function vesselPicture(label: string, colour: string, turns: number): SVGElement {
   const knot = Array.from({ length: turns }, (_, k) => `<ellipse cx="0" cy="${-4 * k}" rx="6" ry="3.4" ${kThread}/>`).join("");
   const thread = turns > 0 ? `<path d="M-15 0H15" ${kThread}/>${knot}<path d="M-4 ${-4 * turns}C-14 -26 -22 -34 -30 -44M4 ${-4 * turns}C12 -24 20 -34 30 -42" ${kThread}/>`
     : `<path d="M-24 -4C-34 -22 -26 -38 -12 -44M-24 -4H16C24 -4 26 -20 26 -26" ${kThread}/>${needle(30, -30, 60, 0.8)}`;
-  return field(stump(-1) + stump(1) + thread, label);
+  return field(stumps(colour) + thread, label);
+}
+
+/// A stitch as it should be, and a needle beside it that goes down through both walls of one stump, far from the edge.
+function lapsesPicture(label: string): SVGElement {
+  return field(`${stumps("#dcc8b6")}<path d="M-12 -6H12C22 -8 24 -22 30 -36" ${kThread}/>${needle(-30, 4, 90, 1.3)}<circle cx="-22" cy="17" r="10" fill="none" stroke="#a3282a" stroke-width="2" stroke-dasharray="4 3"/>`, label);
 }
 
 /// The join seen along the vessel: stitches at `first` [degrees, from the left over the top] are made first, with long ends, those at `then` after them.
@@ -185,6 +195,7 @@ const kScenes: Record<string, (title: string) => SVGElement> = {
   "artery-stitch": (title) => vesselPicture(title, "#cf8378", 0),
   "anastomosis-8": (title) => joinPicture(title, [0, 180], [45, 90, 135, 225, 270, 315]),
   "vessel-stitch": (title) => vesselPicture(title, "#dcc8b6", 0),
+  "vessel-lapses": lapsesPicture,
   "stitch-throw": (title) => vesselPicture(title, "#dcc8b6", 1),
   "stitch-knot": (title) => vesselPicture(title, "#dcc8b6", 3),
   "artery-knot": (title) => vesselPicture(title, "#cf8378", 3),
