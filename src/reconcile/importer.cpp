@@ -123,6 +123,51 @@ std::vector<std::string> load_cells(const std::string& folder, const std::string
   return made;
 }
 
+/// Three beam cells under one weight that is put on and taken off for 57 minutes: mean counts of every forty readings (4.5 s) wholly within one state, which the
+/// counts themselves tell (a weight is the whole range); each time on and off is a trial, the last held out. Weight on stands for 1 rad: its size is not given.
+std::vector<std::string> beams(const std::string& folder, const std::string& out) {
+  constexpr Eigen::Index kBlock = 40, kAside = 30;
+  const CsvTable table = CsvTable::load((fs::path(folder) / "loadingTest.csv").string());
+  const Eigen::VectorXd clock = table.numbers(1) * 1e-3;  // [ms] in the file
+  std::vector<std::string> made;
+  for (const auto& [column, cell] : std::vector<std::pair<int, std::string>>{{3, "635"}, {4, "degraw"}, {5, "tal220"}}) {
+    const Eigen::VectorXd counts = table.numbers(column);
+    const double middle = 0.5 * (counts.minCoeff() + counts.maxCoeff());
+    const auto state = [&](Eigen::Index i) { return counts[i] < middle; };
+    std::vector<std::string> cycles(1);
+    std::vector<int> rows(1, 0);
+    bool last = false;
+    for (Eigen::Index i = 0, run = 0; i < counts.size(); ++i) {
+      run = i > 0 && state(i) == state(i - 1) ? run + 1 : 0;
+      if (run < kBlock + kAside - 1 || (run - kAside + 1) % kBlock != 0) continue;
+      if (i + kAside < counts.size() && state(i + kAside) != state(i)) continue;
+      if (last && !state(i)) cycles.emplace_back(), rows.push_back(0);
+      last = state(i);
+      char line[120];
+      std::snprintf(line, sizeof line, "%.3f,%d,0,%.1f\n", clock.segment(i - kBlock + 1, kBlock).mean() - clock[0], last ? 1 : 0, counts.segment(i - kBlock + 1, kBlock).mean());
+      cycles.back() += line;
+      ++rows.back();
+    }
+    const std::string name = "loadcell-beam-" + cell;
+    const fs::path to = fs::path(out) / name;
+    fs::create_directories(to);
+    std::string yaml = "format: filum-experiment/1\ntitle: \"Beam cell " + cell + ", a weight on and off (1 rad stands for the weight)\"\nsource: FARE-KE repository, 2025\nrig: forceps-bridge\nspecimen: { bits: 24, reference: \"5 V\" }\n"
+                       "model: { file: forceps/linear, free: [strain_gain, strain_offset] }\nchannels:\n  - { name: time, column: t_s, unit: s }\n  - { name: angle, column: weight, unit: rad, kind: input }\n"
+                       "  - { name: grip_force, column: none_N, unit: N, kind: input }\n  - { name: strain_counts, column: counts, unit: count, kind: output }\ntrials:\n";
+    std::vector<std::size_t> whole;
+    for (std::size_t k = 0; k < cycles.size(); ++k)
+      if (rows[k] >= 8) whole.push_back(k);
+    for (const std::size_t k : whole) {
+      const std::string file = "cycle-" + std::to_string(k + 1) + ".csv";
+      write_whole((to / file).string(), "t_s,weight,none_N,counts\n" + cycles[k]);
+      yaml += "  - { file: " + file + ", repeat: A" + (k == whole.back() ? ", hold_out: true" : "") + " }\n";
+    }
+    write_whole((to / "experiment.yaml").string(), yaml);
+    made.push_back(name);
+  }
+  return made;
+}
+
 }  // namespace
 
 std::vector<std::string> import_kinds() { return {"brain-budday2017", "muscle-vanloocke", "loadcells-fareke"}; }
@@ -131,7 +176,11 @@ std::vector<std::string> import_data(const std::string& kind, const std::string&
   if (!fs::is_directory(folder)) throw InputError(folder, "folder", "no such folder", "the folder of the published tables");
   if (kind == "brain-budday2017") return brain(folder, out);
   if (kind == "muscle-vanloocke") return muscle(folder, out);
-  if (kind == "loadcells-fareke") return load_cells(folder, out);
+  if (kind == "loadcells-fareke") {
+    auto made = load_cells(folder, out);
+    for (const std::string& name : beams(folder, out)) made.push_back(name);
+    return made;
+  }
   throw InputError("import", "KIND", kind, "brain-budday2017, muscle-vanloocke or loadcells-fareke");
 }
 

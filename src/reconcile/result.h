@@ -125,7 +125,7 @@ struct Result {
 struct Options {
   Rules rules;
   int threads = 2;
-  std::function<void(const std::string& stage, double share)> progress;  // may be empty
+  std::function<void(const std::string& stage, double share)> progress;  // may be empty; by any thread, one at a time, share never falls
   std::function<bool()> cancelled;                                       // may be empty; asked before every fit, by any thread
 };
 

@@ -57,6 +57,24 @@ void parallel(int threads, std::size_t n, const std::function<void(std::size_t)>
   if (failure) std::rethrow_exception(failure);
 }
 
+/// Tells how far a stretch has come after each of its fits, whichever thread made it.
+class Search::Steps {
+ public:
+  Steps(const Options& options, const Stretch& stretch, std::size_t all) : options_(options), stretch_(stretch), all_(all) {}
+  void done() {
+    const std::lock_guard lock(guard_);
+    ++done_;
+    if (options_.progress) options_.progress(stretch_.stage, stretch_.from + (stretch_.to - stretch_.from) * static_cast<double>(done_) / static_cast<double>(all_));
+  }
+
+ private:
+  const Options& options_;
+  const Stretch& stretch_;
+  const std::size_t all_;
+  std::size_t done_ = 0;
+  std::mutex guard_;
+};
+
 Search::Search(const RigModel& model, const std::vector<Form>& forms, const Options& options)
     : model_(model), forms_(forms), options_(options), fitter_(model, first_noise(model)) {}
 
@@ -150,7 +168,7 @@ std::vector<Score> Search::lines(const Fit& from) const {
 }
 
 /// Fits `from` with one more effect, for the effects that the score test likes best.
-std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_forms) const {
+std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_forms, const Stretch& stretch) const {
   const Rules& rules = options_.rules;
   std::vector<Score> scores = Screen(fitter_, from).all(forms_);
   for (Score& s : lines(from)) scores.push_back(std::move(s));
@@ -177,6 +195,7 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
     candidates.push_back(s);
   }
   std::vector<Fit> fits(candidates.size());
+  Steps steps(options_, stretch, candidates.size());
   parallel(options_.threads, candidates.size(), [&](std::size_t i) {
     stop_if_cancelled(options_);
     auto forms = from.forms;
@@ -185,9 +204,10 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
     params.push_back(candidates[i].start);
     const FitOptions effort{from.forms.empty() ? 25 : 18, 1e-4};
     fits[i] = fitter_.fit(forms, from.base, params, effort, &from);
-    if (candidates[i].form->effect != Effect::saturation) return;
     // a record that is clipped throughout may have been given a scale of its own for it, from which no slope leads back
-    if (Fit anew = fitter_.fit(forms, from.base, params, effort); anew.chi2 < fits[i].chi2) fits[i] = std::move(anew);
+    if (candidates[i].form->effect == Effect::saturation)
+      if (Fit anew = fitter_.fit(forms, from.base, params, effort); anew.chi2 < fits[i].chi2) fits[i] = std::move(anew);
+    steps.done();
   });
   return fits;
 }
@@ -236,7 +256,7 @@ const Fit* Search::best(std::size_t effects) const {
 }
 
 /// Noise and overdispersion from the best fit so far, and all fits again under them.
-void Search::refresh() {
+void Search::refresh(const Stretch& stretch) {
   const Fit& top = candidates_.empty() || bic(candidates_[0]) > bic(base_) ? base_ : candidates_[0];
   Noise noise = estimate_noise(fitter_, top);
   noise.scatter = fitter_.noise().scatter;
@@ -247,10 +267,12 @@ void Search::refresh() {
   fitter_.set_noise(noise);
   base_ = fitter_.fit({}, base_.base, {}, {12, 1e-5}, &base_);
   if (candidates_.size() > 14) candidates_.resize(14);
+  Steps steps(options_, stretch, candidates_.size());
   parallel(options_.threads, candidates_.size(), [&](std::size_t i) {
     stop_if_cancelled(options_);
     const Fit old = candidates_[i];
     candidates_[i] = fitter_.fit(old.forms, old.base, old.params, {6, 1e-4}, &old);
+    steps.done();
   });
   dispersion_ = 1.0;
   const Fit* least = &base_;
@@ -277,18 +299,21 @@ void Search::run() {
   say("baseline", 0.05);
   fit_baseline();
   say("one effect", 0.15);
-  keep(extend(base_, options_.rules.screen_most, 4));
-  refresh();
+  keep(extend(base_, options_.rules.screen_most, 4, {"one effect", 0.15, 0.3}));
+  refresh({"one effect", 0.3, 0.35});
   for (std::size_t size = 1; size < static_cast<std::size_t>(options_.rules.most_effects); ++size) {
     const Fit* top = best(size);
     if (top == nullptr || !worth_more(*top)) break;
     if (bic(*top) > bic(base_) - options_.rules.accept_evidence) break;
-    say(size == 1 ? "pairs" : "three effects", 0.3 + 0.25 * static_cast<double>(size));
+    const char* stage = size == 1 ? "pairs" : "three effects";
+    double at = 0.35 + 0.25 * static_cast<double>(size - 1);
+    say(stage, at);
     std::vector<Fit> parents;
     for (const Fit& f : candidates_)
       if (f.forms.size() == size && parents.size() < (size == 1 ? 3u : 1u)) parents.push_back(f);
-    for (const Fit& p : parents) keep(extend(p, size == 1 ? 4 : 3, 2));
-    refresh();
+    const double each = 0.2 / static_cast<double>(parents.size());
+    for (const Fit& p : parents) keep(extend(p, size == 1 ? 4 : 3, 2, {stage, at, at + each})), at += each;
+    refresh({stage, at, at + 0.05});
     const Fit* next = best(size + 1);
     top = best(size);
     if (next == nullptr || top == nullptr || bic(*next) > bic(*top) - options_.rules.pair_evidence) break;

@@ -40,14 +40,20 @@ class Search {
   double line_p(const Form& form, const Fit& from) const;
 
  private:
+  /// A stretch of the progress bar.
+  struct Stretch {
+    const char* stage;
+    double from, to;
+  };
+  class Steps;
   void fit_baseline();
-  std::vector<Fit> extend(const Fit& from, int most_effects, int most_forms) const;
+  std::vector<Fit> extend(const Fit& from, int most_effects, int most_forms, const Stretch& stretch) const;
   std::vector<Score> lines(const Fit& from) const;
   Line line_of(const Form& f, std::size_t line, const Fit& from) const;
   double places(const Form& f, std::size_t line) const;
   Fit separate(const Fit& from, double frequency) const;
   void keep(std::vector<Fit> fits);
-  void refresh();
+  void refresh(const Stretch& stretch);
   const Fit& fullest() const;
   bool worth_more(const Fit& f) const;
   double preference(const Fit& f) const;

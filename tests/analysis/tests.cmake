@@ -1,4 +1,4 @@
-foreach(name agreement correlation grasp_force report report_page scatter_plot spectrum study tremor)
+foreach(name agreement correlation grasp_force noise_floor recorded_series report report_page scatter_plot spectrum study study_page tremor)
   filum_test(analysis/${name})
 endforeach()
 if(TARGET filum)

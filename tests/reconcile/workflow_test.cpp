@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -152,6 +153,18 @@ TEST(Workflow, WritesTheReportOfTheContract) {
   for (const auto& w : j["where_by"]) axes.insert(w["axis"]);
   EXPECT_EQ(axes, (std::set<std::string>{"trial", "phase", "strain", "rate", "frequency"}));  // one output and one cycle: nothing to compare
   EXPECT_EQ(j["rules"].size(), 38u);
+}
+
+TEST(Workflow, ProgressRisesWithTheFits) {
+  Folder f;
+  write_block(f, 0.4, 2);
+  Options o;
+  std::vector<double> shares;
+  o.progress = [&](const std::string&, double share) { shares.push_back(share); };
+  reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR), o);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_LE(shares.back(), 1.0);
+  EXPECT_GT(shares.size(), 10u);
 }
 
 TEST(Workflow, WhereNothingIsMissingTheSentenceSaysWhatWouldChangeIt) {
