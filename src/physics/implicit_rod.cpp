@@ -15,6 +15,7 @@ constexpr int kMoreToArrive = 3;  // times the iterations while a body is under 
 constexpr int kLoadsFall = 6;       // iterations of a step in which friction's loads follow the normal forces down
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
 constexpr double kLeastReach = 0.05;    // [radii], of the search for near pairs
+constexpr double kMostExtraInertia = 1e6;  // [1], times the nodes' own
 constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
 
 double node_span(const RodState& s, int i) noexcept {
@@ -116,6 +117,7 @@ void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodSte
   theta_.head(s.n) = s.theta.head(s.n);
   set_reference(s, geometry_);
   geometry_fits_ = false;
+  extra_inertia_ = 0.0;
   last_energy_ = -std::numeric_limits<double>::infinity();
   for (ObstacleBody& b : obstacles.bodies) b.X_now = b.X_start;
   grasps.locate(memory.grasps, s);
@@ -289,7 +291,7 @@ void ImplicitRod::assemble_stiffness(const RodState& s, const RodStepOptions& o,
   const double dt = o.dt;
   for (int i = 0; i < s.n; ++i) {
     Mat4 block = Mat4::Zero();
-    const double inertia = material.mass_per_length() / (dt * dt) + material.drag / dt;
+    const double inertia = (1.0 + extra_inertia_) * material.mass_per_length() / (dt * dt) + material.drag / dt;
     block.diagonal().head<3>().setConstant(inertia * node_span(s, i));
     block(3, 3) = i + 1 < s.n ? spin_inertia(material, s, i) / (dt * dt) : 1.0;  // no edge lies behind the last node
     for (int c = 0; c < 4; ++c)
@@ -314,23 +316,35 @@ double ImplicitRod::force_scale(const RodState& s) const noexcept {
 }
 
 /// Newton direction in move_, with the exact stiffness where it can be factorised and does not throw nodes about, else with that of Gauss
-/// and Newton (compressed strands make it so).
+/// and Newton (compressed strands make it so) and extra inertia, as much as it takes (K. Levenberg, Q. Appl. Math. 2:164, 1944; D. Marquardt,
+/// J. Soc. Indust. Appl. Math. 11:431, 1963): a slack loop that weighs nothing then stays, and contacts and stretch elsewhere are still balanced
+/// in full, where a direction made shorter as a whole would balance neither.
 bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffness& kind) noexcept {
   for (;; kind = Stiffness::gauss_newton) {
     assemble_stiffness(s, o, kind);
-    const bool factored = matrix_.factor();
-    if (!factored && kind == Stiffness::gauss_newton) return false;
-    if (!factored) continue;
+    if (!matrix_.factor()) {
+      if (kind == Stiffness::gauss_newton) return false;
+      continue;
+    }
     move_.leftCols(s.n) = -gradient_.leftCols(s.n);
     matrix_.solve(move_.leftCols(s.n));
     const double length = largest_move(move_, s.n);
-    if (length > o.longest_move && kind == Stiffness::exact) continue;
+    if (length > o.longest_move && extra_inertia_ < kMostExtraInertia) {
+      extra_inertia_ = std::clamp(30.0 * extra_inertia_, 100.0, kMostExtraInertia);
+      continue;
+    }
     if (length > o.longest_move) move_.leftCols(s.n) *= o.longest_move / length;
     slope_ = (gradient_.leftCols(s.n).array() * move_.leftCols(s.n).array()).sum();
     keep_lengths(s, EdgeLength::first_order);
     contact_.travel.look_along(move_);
     return true;
   }
+}
+
+/// More inertia for the next direction where this one had to be shortened, less where it was good.
+void ImplicitRod::adapt_inertia(bool shortened) noexcept {
+  extra_inertia_ = shortened ? std::clamp(5.0 * extra_inertia_, 3.0, kMostExtraInertia) : 0.3 * extra_inertia_;
+  if (extra_inertia_ < 0.3) extra_inertia_ = 0.0;
 }
 
 bool ImplicitRod::touches_nothing() const noexcept {
@@ -374,7 +388,10 @@ bool ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodS
   const double before = energy(s, x_, theta_, o, 0.0), highest = std::max(before, last_energy_);
   last_energy_ = before;
   for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5)
-    if (try_move(s, fraction, highest + 1e-4 * fraction * slope_, o)) return true;
+    if (try_move(s, fraction, highest + 1e-4 * fraction * slope_, o)) {
+      adapt_inertia(k > 0);
+      return true;
+    }
   return false;
 }
 

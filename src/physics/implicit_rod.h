@@ -89,6 +89,7 @@ class ImplicitRod {
   void assemble_stiffness(const RodState& s, const RodStepOptions& o, Stiffness kind) noexcept;
   double force_scale(const RodState& s) const noexcept;
   bool direction(const RodState& s, const RodStepOptions& o, Stiffness& kind) noexcept;
+  void adapt_inertia(bool shortened) noexcept;
   bool touches_nothing() const noexcept;
   void keep_lengths(const RodState& s, EdgeLength which) noexcept;
   bool newton_step(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
@@ -114,6 +115,7 @@ class ImplicitRod {
   Eigen::Matrix4Xd rest_kappa_;            // rest shape proper, while the step works with the softened one
   Eigen::VectorXd rest_twist_;
   double slope_ = 0.0;          // [J], of the sum along the Newton direction
+  double extra_inertia_ = 0.0;  // [1], times the nodes' own, in the matrix only
   double last_energy_ = 0.0;    // [J], at the iterate before, with the loads of then
   bool geometry_fits_ = false;  // geometry_ is that of x_ and theta_
 };
