@@ -71,6 +71,9 @@ std::string plot(const PlotText& text, const std::vector<Curve>& curves, int wid
   for (const Curve& c : curves)
     for (Eigen::Index i = 0; i < c.x.size(); ++i)
       if (std::isfinite(c.y[i])) f.x0 = std::min(f.x0, c.x[i]), f.x1 = std::max(f.x1, c.x[i]), f.y0 = std::min(f.y0, c.y[i]), f.y1 = std::max(f.y1, c.y[i]);
+  for (const Curve& c : curves)
+    for (const double low : c.low)
+      if (std::isfinite(low)) f.y0 = std::min(f.y0, low);
   if (!std::isfinite(f.x0)) return "";
   widen(f.x0, f.x1);
   widen(f.y0, f.y1);

@@ -58,7 +58,7 @@ std::string unit_of(const Dataset& d, const std::string& channel) {
 Curve replicate_band(const Dataset& d, std::size_t trial, const std::string& output) {
   const Trial& t = d.trials[trial];
   Curve band{t.time, {}, "#e4e4e4", false, {}};
-  if (t.repeat.empty()) return band;
+  if (t.repeat.empty() || d.rig == Rig::tip_hold) return band;  // a hand's records wander each their own way from an origin of no meaning
   int others = 0;
   Eigen::VectorXd low = t.at(output), high = low;
   for (const Trial& o : d.trials) {
@@ -213,8 +213,12 @@ void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
       if (c < trial.size()) samples += static_cast<double>(std::count_if(trial[c].begin(), trial[c].end(), [](double v) { return std::isfinite(v); }));
     s << row({d.outputs[c], quantity(o.sigma, unit_of(d, d.outputs[c])), o.from, number(o.rho, 2), number(samples), number(std::floor(samples * (1.0 - o.rho) / (1.0 + o.rho))), quantity(o.full_scale, unit_of(d, d.outputs[c]))});
   }
-  s << "</table><p>Records of one batch differ in stiffness by " << number(100 * r.noise.scatter, 2) << " % (1 sd). Structure left in the residual: " << number(r.structure_before, 3) << " standard deviations before, "
-    << number(r.structure_after, 3) << " after. Overdispersion used for all comparisons: " << number(r.dispersion, 3) << ".</p>\n<h2>Parameters</h2><table>" << (r.verdict == "effect" ? row({"parameter", "baseline alone", "with the effect"}, "th") : row({"parameter", "baseline"}, "th"));
+  s << "</table>";
+  if (d.rig == Rig::tip_hold) s << "<p>The octave of the spectrum with most power beside what is named has twice the log likelihood of " << number(r.structure_before, 3) << " against noise.</p>\n";
+  else s << "<p>Records of one batch differ in stiffness by " << number(100 * r.noise.scatter, 2) << " % (1 sd). Structure left in the residual: " << number(r.structure_before, 3) << " standard deviations before, "
+         << number(r.structure_after, 3) << " after. Overdispersion used for all comparisons: " << number(r.dispersion, 3) << ".</p>\n";
+  s << "<h2>Parameters</h2>" << (d.rig == Rig::tip_hold ? "<p>A still hand has no parameters but those of what is named.</p>" : "") << "<table>"
+    << (r.verdict == "effect" ? row({"parameter", "baseline alone", "with the effect"}, "th") : r.baseline_alone.empty() ? std::string() : row({"parameter", "baseline"}, "th"));
   for (const Estimate& e : r.baseline_alone) {
     if (r.verdict != "effect") {
       s << row({e.name, interval(e)});
