@@ -188,7 +188,7 @@ std::vector<Form> RigModel::sensor_forms() const {
     const int at = static_cast<int>(c);
     std::string si = "-";
     for (const ChannelInfo& k : info(d.rig).channels) if (k.name == name) si = k.unit;
-    if (name[0] == 'u' && d.rig == Rig::spatula_press) si = "m";
+    if (name[0] == 'u' && d.rig == Rig::spatula_press) si.assign(1, 'm');
     if (clocked && has_scale()) {
       const double r = 3.0 * fs / span;
       out.push_back({Effect::sensor_drift, 2 * at, name + ": offset linear in time", {{"rate", si + "/s", -r, r, false}}, {{0.02 * r}}, false});

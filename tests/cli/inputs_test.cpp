@@ -37,7 +37,9 @@ std::string recording(const synthetic::Folder& folder, int samples) {
 }
 
 TEST(Inputs, ADemonstrationFollowsTheScenesClock) {
-  const InputDevices demo = open_inputs("demo", FILUM_SOURCE_DIR, "tip-hold"), file = open_inputs(std::string(FILUM_SOURCE_DIR) + "/curricula/research/tip-hold/demonstration.yaml", FILUM_SOURCE_DIR, "tip-hold");
+  std::string script = FILUM_SOURCE_DIR;  // appended: g++ 12 warns of overlap in a sum of strings
+  script.append("/curricula/research/tip-hold/demonstration.yaml");
+  const InputDevices demo = open_inputs("demo", FILUM_SOURCE_DIR, "tip-hold"), file = open_inputs(script, FILUM_SOURCE_DIR, "tip-hold");
   for (const InputDevices* d : {&demo, &file}) {
     EXPECT_TRUE(d->scripted);
     ASSERT_EQ(d->devices.size(), 1u);
