@@ -341,7 +341,8 @@ bool ImplicitRod::direction(const RodState& s, const RodStepOptions& o, Stiffnes
   }
 }
 
-/// More inertia for the next direction where this one had to be shortened, less where it was good.
+/// More inertia for the next direction where this one had to be shortened, less where it was good. A thread that touches nothing keeps its lengths
+/// by another way (keep_lengths), and would only fall more slowly.
 void ImplicitRod::adapt_inertia(bool shortened) noexcept {
   extra_inertia_ = shortened ? std::clamp(5.0 * extra_inertia_, 3.0, kMostExtraInertia) : 0.3 * extra_inertia_;
   if (extra_inertia_ < 0.3) extra_inertia_ = 0.0;
@@ -389,7 +390,7 @@ bool ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodS
   last_energy_ = before;
   for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5)
     if (try_move(s, fraction, highest + 1e-4 * fraction * slope_, o)) {
-      adapt_inertia(k > 0);
+      adapt_inertia(k > 0 && !touches_nothing());
       return true;
     }
   return false;
