@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 namespace filum {
 namespace {
@@ -44,6 +45,7 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut)
   s.tension = std::max(p.tension, q.tension);
   s.peak_force = std::max(p.peak_force, q.peak_force);
   s.torn = std::max(p.torn, q.torn);
+  s.joins = whole && p.state == PassObservation::State::thread && q.state == PassObservation::State::thread;
   return s;
 }
 
@@ -69,6 +71,7 @@ LapseRules load_lapse_rules(const std::string& path) {
   r.back_wall = file.quantity_or("back_wall", "deg", r.back_wall, Range::between(0.0, std::numbers::pi));
   r.overlap = file.number_or("edge_overlap_thicknesses", r.overlap, Range::positive());
   r.tight = file.quantity_or("too_tight", "N/m", r.tight, Range::positive());
+  r.slack = file.quantity_or("loose_slack", "mm", r.slack, Range::positive());
   r.loose_gap = file.number_or("loose_gap_thicknesses", r.loose_gap, Range::positive());
   r.line_gap = file.number_or("line_gap_thicknesses", r.line_gap, Range::positive());
   r.neighbours = file.quantity_or("neighbours", "deg", r.neighbours, Range::between(0.0, std::numbers::pi));
@@ -112,6 +115,7 @@ std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>&
     const double bite = std::isnan(s.bite[1]) ? s.bite[0] : std::min(s.bite[0], s.bite[1]);
     if (s.tension > rules.tight * bite) found.push_back({"too-tight", i, s.time, s.tension / bite, "N/m"});
     if (s.torn > rules.tear) found.push_back({"wall-tear", i, s.time, s.torn, "m"});
+    if (s.slack > rules.slack) found.push_back({"loose-knot", i, s.time, s.slack, "m"});
   }
   const std::vector<double> gaps = spacings_of(stitches);
   if (gaps.size() < 2) return found;
@@ -150,12 +154,14 @@ void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const Tiss
   const double width = kTurn / static_cast<double>(join.sector_gap.size());
   const auto wrapped = [](double a) { return a - kTurn * std::floor(a / kTurn); };
   std::vector<std::pair<double, int>> at;  // angle of each stitch, ascending
+  const auto told = [&](int k) { return std::any_of(found.begin(), found.end(), [&](const Lapse& l) { return l.stitch == k && std::string_view(l.name) == "loose-knot"; }); };
   for (std::size_t k = 0; k < stitches.size(); ++k) {
+    if (!stitches[k].joins) continue;
     const double angle = wrapped(stitches[k].position / scene.radius);
     at.emplace_back(angle, static_cast<int>(k));
     const auto sector = std::min(static_cast<std::size_t>(angle / width), join.sector_gap.size() - 1);
     const double gap = join.sector_gap[sector] / scene.thickness;
-    if (gap > rules.loose_gap) found.push_back({"loose-knot", static_cast<int>(k), time, gap, "thicknesses"});
+    if (gap > rules.loose_gap && !told(static_cast<int>(k))) found.push_back({"loose-knot", static_cast<int>(k), time, gap, "thicknesses"});
   }
   std::sort(at.begin(), at.end());
   for (std::size_t k = 0; k < at.size() && at.size() > 1; ++k) {

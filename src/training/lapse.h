@@ -26,6 +26,7 @@ struct LapseRules {
   double thread_inside = 0.5e-3;  // [m], thread left in the lumen
   double overlap = 1.0;           // thicknesses, of the cut edges past each other
   double tight = 100.0;           // [N/m], pull of the thread left in a stitch, for each length of bite
+  double slack = std::numeric_limits<double>::infinity();      // [m], thread in a stitch's knot and loop beyond the way round its bites; infinite: not looked for
   // of joins whose stitches are to be tied, under pressure; infinite: not looked for
   double loose_gap = std::numeric_limits<double>::infinity();  // thicknesses, between the edges at a stitch
   double line_gap = std::numeric_limits<double>::infinity();   // thicknesses, between two neighbouring stitches
@@ -46,6 +47,8 @@ struct Stitch {
   std::string knot;               // its class (knot_classifier.h), empty: the stitch is not tied
   int throws = 0;
   double tail = std::numeric_limits<double>::quiet_NaN();  // [m]
+  double slack = std::numeric_limits<double>::quiet_NaN();  // [m], thread in its knot and loop beyond the shortest way round the bites that the loop holds
+  bool joins = false;             // thread is in both sides of the cut: not a lone pass, not torn out
 };
 
 struct Lapse {
@@ -68,8 +71,8 @@ void find_back_walls(const LapseRules& rules, const TissueObservation& tissue, c
                      const std::vector<Stitch>& stitches, std::vector<Lapse>& found);
 /// "thread-in-lumen", "edge-overlap".
 void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found);
-/// "loose-knot": the edges stand apart at a stitch that was to be tied; "disrupted-line": they do between two neighbours. From the gaps of the
-/// sectors under pressure.
+/// "loose-knot": the edges stand apart at a stitch that was to be tied (told once a stitch, whether by this or by its slack); "disrupted-line": they
+/// do between two neighbours. From the gaps of the sectors under pressure. Of stitches that join both edges only: a lone pass ties nothing.
 void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, double time,
                      std::vector<Lapse>& found);
 

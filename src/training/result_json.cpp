@@ -133,7 +133,8 @@ Json stitch_json(const Stitch& s, double thickness) {
           {"torn_m", finite(s.torn)},
           {"throws", s.throws},
           {"knot", s.knot.empty() ? Json(nullptr) : Json(s.knot)},
-          {"tail_mm", finite(1e3 * s.tail)}};
+          {"tail_mm", finite(1e3 * s.tail)},
+          {"slack_mm", finite(1e3 * s.slack)}};
 }
 
 /// Of the walls alone at a held pressure (world/join_test.h).

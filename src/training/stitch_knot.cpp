@@ -41,6 +41,20 @@ std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures) {
   return knots;
 }
 
+double way_round(const StitchKnot& knot, const TissueObservation& tissue) {
+  double way = 0.0;
+  const Vec3 *first = nullptr, *last = nullptr;
+  for (int i = 0; i < tissue.n_passes; ++i) {
+    const PassObservation& p = tissue.passes[static_cast<std::size_t>(i)];
+    if (!knot.holds(p.arc)) continue;
+    if (last != nullptr) way += (p.entry_W - *last).norm();
+    else first = &p.entry_W;
+    way += (p.exit_W - p.entry_W).norm();
+    last = &p.exit_W;
+  }
+  return last == nullptr ? 0.0 : way + (*last - *first).norm();
+}
+
 void name_knots(const StitchKnot& knot, const TissueObservation& tissue, std::vector<Stitch>& stitches) {
   for (Stitch& s : stitches) {
     const double first = tissue.passes[static_cast<std::size_t>(s.first)].arc;
@@ -49,6 +63,7 @@ void name_knots(const StitchKnot& knot, const TissueObservation& tissue, std::ve
     s.knot = knot.knot.knot_class;
     s.throws = knot.knot.n_throws;
     s.tail = knot.tail;
+    s.slack = knot.loop() - way_round(knot, tissue);
   }
 }
 

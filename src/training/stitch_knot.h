@@ -32,7 +32,10 @@ StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int clos
 /// Of each piece that goes through tissue.
 std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures = 5);
 
-/// Tells each stitch the knot that it is tied with.
+/// [m], shortest way round the bites that the knot's loop holds, as they are now: from hole to hole in straight lines, and back.
+double way_round(const StitchKnot& knot, const TissueObservation& tissue);
+
+/// Tells each stitch the knot that it is tied with, and the slack of its loop. A knot drawn down keeps what is in the knot itself, 20 to 30 diameters.
 void name_knots(const StitchKnot& knot, const TissueObservation& tissue, std::vector<Stitch>& stitches);
 
 }  // namespace filum

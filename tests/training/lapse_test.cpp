@@ -192,7 +192,7 @@ TEST(Lapse, ThreadLeftTooTightForItsBite) {
 }
 
 /// Stitches at 45 and 135 degrees (sectors 1 and 3 of eight), then the gaps of the sectors.
-std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 135.0) {
+std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 135.0, bool joins = true) {
   LapseRules rules;
   rules.loose_gap = 0.5;
   rules.line_gap = 0.3;
@@ -201,6 +201,8 @@ std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 1
   std::vector<Stitch> stitches(2);
   stitches[0].position = kRadius * 67.5 * std::acos(-1.0) / 180.0;
   stitches[1].position = kRadius * (second + 22.5) * std::acos(-1.0) / 180.0;
+  stitches[0].joins = true;
+  stitches[1].joins = joins;
   JoinReport join;
   for (const double g : gaps) join.sector_gap.push_back(g * kThickness);
   std::vector<Lapse> found;
@@ -222,6 +224,48 @@ TEST(Lapse, GapsAtStitchesAndBetweenThem) {
   const auto seam = gap_lapses({0.4, 0, 2, 2, 2, 2, 2, 0}, 315.0);
   ASSERT_EQ(seam.size(), 1u) << "over the seam of the angle";
   EXPECT_STREQ(seam[0].name, "disrupted-line");
+}
+
+TEST(Lapse, GapsAreNoFaultOfBitesThatJoinNothing) {
+  EXPECT_TRUE(gap_lapses({2, 0, 0, 0.6, 2, 2, 2, 2}, 135.0, false).empty()) << "a lone pass has no knot to be loose";
+  EXPECT_TRUE(gap_lapses({2, 0, 0.4, 0, 2, 2, 2, 2}, 135.0, false).empty()) << "nor is it anybody's neighbour";
+  EXPECT_EQ(gap_lapses({2, 0.6, 0, 0, 2, 2, 2, 2}, 135.0, false).size(), 1u) << "the other one has";
+}
+
+TEST(Lapse, OnlyThreadThroughBothSidesJoins) {
+  auto t = good();
+  t.passes[3].state = PassObservation::State::torn;
+  t.passes[4].state = PassObservation::State::needle;
+  t.n_passes = 7;
+  const auto s = stitches_of(t, {}, card());
+  ASSERT_EQ(s.size(), 4u);
+  EXPECT_TRUE(s[0].joins);
+  EXPECT_FALSE(s[1].joins) << "one side torn out";
+  EXPECT_FALSE(s[2].joins) << "the needle is still in it";
+  EXPECT_FALSE(s[3].joins) << "a lone pass";
+}
+
+TEST(Lapse, AKnotWithSlackIsLooseAndToldOnce) {
+  LapseRules rules;
+  Stitch s;
+  s.joins = true;
+  s.depth = 1.0;
+  s.slack = 1.9e-3;
+  EXPECT_TRUE(lapses_of(rules, {s}, kThickness).empty()) << "not asked for";
+  rules.slack = 2e-3;
+  EXPECT_TRUE(lapses_of(rules, {s}, kThickness).empty());
+  s.slack = 2.1e-3;
+  auto found = lapses_of(rules, {s}, kThickness);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_STREQ(found[0].name, "loose-knot");
+  EXPECT_EQ(found[0].value, 2.1e-3);
+  rules.loose_gap = 0.5;
+  TissueDescription scene = tube();
+  scene.thickness = kThickness;
+  JoinReport join;
+  join.sector_gap.assign(8, kThickness);
+  find_gap_lapses(rules, join, scene, {s}, 3.0, found);
+  EXPECT_EQ(found.size(), 1u) << "its edges stand apart too";
 }
 
 }  // namespace

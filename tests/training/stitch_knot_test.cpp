@@ -72,6 +72,26 @@ TEST(StitchKnot, AThrowThatReachesOverBothBitesTiesTheStitch) {
   EXPECT_GT(stitches[0].tail, 4e-3);
 }
 
+/// The way round a stitch with holes at the corners of 0.6 by 0.2 mm is 1.6 mm; what its knot holds beyond that is slack.
+TEST(StitchKnot, SlackIsTheLoopLessTheWayRoundItsBites) {
+  const StitchKnot k = knot_in(trefoil(0.5e-3, 5e-3, 8e-3));
+  const double middle = 0.5 * (k.begin + k.end);
+  TissueObservation tissue;
+  auto stitches = stitch_at(tissue, middle - 0.3e-3, middle + 0.3e-3);
+  const double x[] = {-0.3e-3, 0.3e-3};
+  for (std::size_t i = 0; i < 2; ++i) {
+    tissue.passes[i].entry_W = Vec3(x[i], 0.0, i == 0 ? 0.2e-3 : 0.0);
+    tissue.passes[i].exit_W = Vec3(x[i], 0.0, i == 0 ? 0.0 : 0.2e-3);
+  }
+  tissue.n_passes = 3;  // a bite that the loop does not hold counts for nothing
+  tissue.passes[2].arc = -1.0;
+  tissue.passes[2].entry_W = Vec3(1, 1, 1);
+  EXPECT_NEAR(way_round(k, tissue), 1.6e-3, 1e-15);
+  name_knots(k, tissue, stitches);
+  EXPECT_NEAR(stitches[0].slack, k.loop() - 1.6e-3, 1e-15);
+  EXPECT_EQ(way_round(StitchKnot{}, tissue), 0.0) << "no knot";
+}
+
 TEST(StitchKnot, AKnotBesideTheStitchTiesNothing) {
   const Observation o = trefoil(1e-3, 5e-3, 8e-3);
   TissueObservation tissue;
