@@ -16,7 +16,7 @@ filum_test(cli/rating_desk)
 filum_test(cli/wall_colours)
 if(TARGET filum)
   add_test(NAME cli.mesh COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/mesh_test.sh $<TARGET_FILE:filum>)
-  set_tests_properties(cli.mesh PROPERTIES TIMEOUT 60)
+  set_tests_properties(cli.mesh PROPERTIES TIMEOUT 300)
 endif()
 if(TARGET filum)
   add_test(NAME cli.serial_run COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/serial_run_test.sh $<TARGET_FILE:filum>
