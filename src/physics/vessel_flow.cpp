@@ -14,29 +14,26 @@ bool is_way(double resistance) noexcept { return resistance > 0.0 && std::isfini
 
 }  // namespace
 
-LumenLine::LumenLine(const VesselMesh& mesh) : rings_(inner_rings(mesh, 0)) {
-  first_of_second_ = rings_.size();
-  std::vector<std::vector<int>> second = inner_rings(mesh, 1);
-  rings_.insert(rings_.end(), second.rbegin(), second.rend());  // from its cut edge to its clamp
-  middle_.resize(rings_.size());
-  for (std::vector<double>* list : {&along_, &area_, &volume_, &resistance_}) list->assign(rings_.size(), 0.0);
+LumenLine::LumenLine(const VesselMesh& mesh) : way_(passage_of(mesh)) {
+  middle_.resize(way_.rings.size());
+  for (std::vector<double>* list : {&along_, &area_, &volume_, &resistance_}) list->assign(way_.rings.size(), 0.0);
 }
 
 void LumenLine::measure(const Points& x, double viscosity) noexcept {
-  for (std::size_t k = 0; k < rings_.size(); ++k) {
-    const std::vector<int>& ring = rings_[k];
+  for (std::size_t k = 0; k < way_.rings.size(); ++k) {
+    const std::vector<int>& ring = way_.rings[k];
     Vec3 m = Vec3::Zero(), normal = Vec3::Zero();
     for (const int i : ring) m += x.col(i) / static_cast<double>(ring.size());
     for (std::size_t j = 0; j < ring.size(); ++j) normal += 0.5 * (x.col(ring[j]) - m).cross(x.col(ring[(j + 1) % ring.size()]) - m);
     middle_[k] = m;
-    area_[k] = std::max(normal.norm(), kLeastArea);
+    area_[k] = std::max(normal.norm() * way_.across[k], kLeastArea);
     if (k == 0) continue;
     const double step = (m - middle_[k - 1]).norm(), area = 0.5 * (area_[k] + area_[k - 1]);
     along_[k] = along_[k - 1] + step;
     volume_[k] = volume_[k - 1] + area * step;
     resistance_[k] = resistance_[k - 1] + 8.0 * std::numbers::pi * viscosity * step / (area_[k] * area_[k - 1]);
   }
-  join_ = 0.5 * (along_[first_of_second_ - 1] + along_[first_of_second_]);
+  join_ = 0.5 * (along_[way_.second - 1] + along_[way_.second]);
 }
 
 double LumenLine::least_area() const noexcept { return *std::min_element(area_.begin(), area_.end()); }

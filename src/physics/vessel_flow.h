@@ -33,13 +33,13 @@ struct Circulation {
   double downstream() const noexcept { return (pressure - back) / through - upstream(); }
 };
 
-/// Centre line, areas and resistance of the lumen of two stumps, upstream clamp first. Measured anew when told; allocates at the start only.
+/// Centre line, areas and resistance of the lumen of a join (vessel_leak.h, Passage), upstream clamp first. Measured anew when told; allocates at the start only.
 class LumenLine {
  public:
   explicit LumenLine(const VesselMesh& mesh);
 
   void measure(const Points& x, double viscosity) noexcept;
-  int n() const noexcept { return static_cast<int>(rings_.size()); }
+  int n() const noexcept { return static_cast<int>(way_.rings.size()); }
   const Vec3& middle(int k) const noexcept { return middle_[static_cast<std::size_t>(k)]; }
   double along(int k) const noexcept { return along_[static_cast<std::size_t>(k)]; }  // [m], from the first ring
   double area(int k) const noexcept { return area_[static_cast<std::size_t>(k)]; }    // [m2]
@@ -53,8 +53,7 @@ class LumenLine {
   /// Integral over [from, to] of what grows by `per` from ring to ring.
   double share(const std::vector<double>& sums, double from, double to) const noexcept;
 
-  std::vector<std::vector<int>> rings_;
-  std::size_t first_of_second_ = 0;
+  Passage way_;
   std::vector<Vec3> middle_;
   std::vector<double> along_, area_, volume_, resistance_;
   double join_ = 0.0;

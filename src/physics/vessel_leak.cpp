@@ -46,6 +46,19 @@ int outer_of(const VesselMesh& mesh, int inner) noexcept {
   return node;
 }
 
+struct RingSpan {
+  Vec3 middle, area;  // [m], [m2]: vector area
+};
+RingSpan span_of(const std::vector<int>& ring, const Points& x) noexcept {
+  RingSpan s{Vec3::Zero(), Vec3::Zero()};
+  for (const int i : ring) s.middle += x.col(i) / static_cast<double>(ring.size());
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Vec3 p = x.col(ring[k]), q = x.col(ring[(k + 1) % ring.size()]);
+    s.area += 0.5 * (p - s.middle).cross(q - s.middle);
+  }
+  return s;
+}
+
 }  // namespace
 
 double slit_speed(double gap, double depth, const BloodOptions& o) noexcept {
@@ -57,7 +70,8 @@ double slit_speed(double gap, double depth, const BloodOptions& o) noexcept {
 EdgeGap edge_gap(const VesselMesh& mesh, const Points& x, int a, int b, std::size_t k) noexcept {
   const std::vector<int>& ring = mesh.edge_ring[static_cast<std::size_t>(a)];
   const int inner = ring[k], next = ring[(k + 1) % ring.size()], outer = outer_of(mesh, inner);
-  EdgeGap g{std::numeric_limits<double>::infinity(), (x.col(outer) - x.col(inner)).norm(), (x.col(next) - x.col(inner)).norm(), Vec3::Zero()};
+  EdgeGap g{std::numeric_limits<double>::infinity(), (x.col(outer) - x.col(inner)).norm(), (x.col(next) - x.col(inner)).norm(), Vec3::Zero(),
+            mesh.edge_share[static_cast<std::size_t>(a)][k]};
   for (const double share : {0.0, 0.5, 1.0}) {
     const Vec3 q = (1.0 - share) * x.col(inner) + share * x.col(outer);
     Vec3 nearest = q;
@@ -76,7 +90,7 @@ double leak_through(std::span<const EdgeGap> gaps, std::span<LeakSector> sectors
   std::size_t last = sectors.size();
   for (std::size_t k = 0; k < gaps.size(); ++k) {
     const EdgeGap &here = gaps[k], &next = gaps[(k + 1) % gaps.size()];
-    const std::size_t number = k * sectors.size() / gaps.size();
+    const auto number = std::min(static_cast<std::size_t>(here.share * static_cast<double>(sectors.size())), std::max<std::size_t>(sectors.size(), 1) - 1);
     LeakSector& s = sectors.empty() ? nowhere : sectors[number];
     const double gap = 0.5 * (here.gap + next.gap), depth = 0.5 * (here.depth + next.depth), flow = slit_speed(gap, depth, blood) * gap * here.length;
     s.length += here.length;
@@ -122,15 +136,39 @@ std::vector<std::vector<int>> inner_rings(const VesselMesh& mesh, int part) {
 std::vector<LumenRing> lumen_rings(const VesselMesh& mesh, const Points& x, int part) {
   std::vector<LumenRing> rings;
   for (const auto& ring : inner_rings(mesh, part)) {
-    LumenRing r;
-    for (const int i : ring) r.middle += x.col(i) / static_cast<double>(ring.size());
-    Vec3 area = Vec3::Zero();
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const Vec3 p = x.col(ring[k]), q = x.col(ring[(k + 1) % ring.size()]);
-      area += 0.5 * (p - r.middle).cross(q - r.middle);
-    }
-    r.area = area.norm();
-    rings.push_back(r);
+    const RingSpan s = span_of(ring, x);
+    rings.push_back({s.area.norm(), s.middle});
+  }
+  return rings;
+}
+
+Passage passage_of(const VesselMesh& mesh) {
+  Passage p;
+  int least = std::numeric_limits<int>::max(), most = 0;  // slabs of the first edge
+  for (const int i : mesh.edge_ring[0]) {
+    least = std::min(least, mesh.slab[static_cast<std::size_t>(i)]);
+    most = std::max(most, mesh.slab[static_cast<std::size_t>(i)]);
+  }
+  for (const auto& ring : inner_rings(mesh, 0))
+    if (2 * mesh.slab[static_cast<std::size_t>(ring.front())] <= least + most) p.rings.push_back(ring);
+  p.second = p.rings.size();
+  const std::vector<std::vector<int>> second = inner_rings(mesh, 1);
+  p.rings.insert(p.rings.end(), second.rbegin(), second.rend());  // from its cut edge to its clamp
+  for (std::size_t k = 0; k < p.rings.size(); ++k) {
+    const std::size_t first = k < p.second ? 0 : p.second, end = k < p.second ? p.second : p.rings.size();
+    const std::size_t from = k > first ? k - 1 : k, to = std::min(end - 1, k + 1);
+    const Vec3 way = span_of(p.rings[to], mesh.nodes).middle - span_of(p.rings[from], mesh.nodes).middle;
+    const double cosine = to > from ? std::abs(way.normalized().dot(span_of(p.rings[k], mesh.nodes).area.normalized())) : 1.0;
+    p.across.push_back(cosine > 1.0 - 1e-9 ? 1.0 : cosine);
+  }
+  return p;
+}
+
+std::vector<LumenRing> lumen_rings(const Passage& way, const Points& x) {
+  std::vector<LumenRing> rings;
+  for (std::size_t k = 0; k < way.rings.size(); ++k) {
+    const RingSpan s = span_of(way.rings[k], x);
+    rings.push_back({s.area.norm() * way.across[k], s.middle});
   }
   return rings;
 }

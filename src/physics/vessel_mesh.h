@@ -1,5 +1,5 @@
 #pragma once
-// Hexahedra of a vessel wall: tubes cut open at one end, flaps of a flat card, and several of them together. An element carries
+// Hexahedra of a vessel wall: tubes cut at one end (square or bevelled), tubes with an opening in their side, flaps of a flat card, and several together. An element carries
 // the corners it would have without stress beside its nodes, so that rings sprung shut (opening angle) and stretched tubes
 // are meshes like any other (Holzapfel, Gasser & Ogden 2000, sec. 3.1: r(R), k = 2 pi / (2 pi - alpha)).
 // Local coordinates of an element: xi around (or along the edge of a card), eta along (towards the cut edge), zeta outward, each
@@ -13,7 +13,7 @@
 
 namespace filum {
 
-enum class WallSurface { inner, outer, edge, end };  // edge: the cut edge (eta = 1); end: the other borders
+enum class WallSurface { inner, outer, edge, end };  // edge: of the cut or opening; end: the other borders
 
 using Corners = Eigen::Matrix<double, 3, 8>;
 
@@ -34,6 +34,7 @@ struct VesselMesh {
   std::vector<int> held;                      // nodes that a clamp or frame moves
   std::vector<WallFace> faces;                // the whole surface
   std::vector<std::vector<int>> edge_ring;    // of each part: nodes of the inner rim of its cut edge, in order
+  std::vector<std::vector<double>> edge_share;  // where on the ring each of them is: share of its length as first made, from its first node
   std::vector<int> sectors;                   // of each part: alike, round closed rings; 0: none such
   int n_nodes() const { return static_cast<int>(nodes.cols()); }
   int n_elements() const { return static_cast<int>(elements.size()); }
@@ -48,10 +49,26 @@ struct TubeShape {
   double first_inner_radius = 0.0; // [m], of the first shape; 0: such that the middle of the wall keeps its length
   int around = 24, along = 15, through = 1;  // elements
   double edge_grading = 1.0;       // length of the elements at the clamp over those at the cut edge
+  double bevel = 0.0;              // [rad], of the cut, from square, as first made: the lip at angle zero is the longest, and `length` is that of the axis
 };
 
 /// Axis along z from the clamp at z = 0 to the cut edge; held: the nodes at z = 0.
 VesselMesh make_tube(const TubeShape& shape);
+
+/// An ellipse out of the side of a tube, half way along it, as first made.
+struct SideOpening {
+  double length = 1.4e-3, width = 0.7e-3;  // [m], axes of the ellipse: along the tube, and around it on the middle of the wall
+  int across = 6, along = 8;               // elements of the tube's grid whose place it takes; across even
+};
+
+/// Both ends are held (shape.grading and shape.bevel do not count). The ellipse's middle lies at angle zero; its ring begins at its end of greater z.
+/// The border of the grid's gap is spread over the ellipse, more densely at its ends along the tube; between it and the tube's ends every point is the mean of
+/// its four neighbours on the grid (discrete harmonic map), so that three elements meet in 180 degrees at each of the gap's corners. Throws std::invalid_argument if it does not fit.
+VesselMesh make_opened_tube(const TubeShape& shape, const SideOpening& opening);
+
+/// Least over the corners of an element of det(dx/dxi) by the product of its three sides there: 1 a brick, 0 flat, negative inside out (scaled
+/// Jacobian: Knupp, SIAM J. Sci. Comput. 23:193, 2001).
+double scaled_jacobian(const Corners& corners) noexcept;
 
 struct CardShape {
   double width = 10e-3, depth = 5e-3;  // [m], x along the cut edge, y towards it

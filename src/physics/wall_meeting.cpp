@@ -31,33 +31,44 @@ double ring_area(const std::vector<int>& ring, const Points& x) noexcept {
   return 0.5 * twice.norm();
 }
 
+/// Nodes of the cut edges and of kRows rows of elements behind them.
+std::vector<char> near_cut(const VesselMesh& mesh) {
+  std::vector<char> near(mesh.slab.size(), 0);
+  for (const WallFace& f : mesh.faces)
+    if (f.surface == WallSurface::edge)
+      for (const int c : f.corner) near[static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(f.element)][static_cast<std::size_t>(c)])] = 1;
+  for (int row = 0; row < kRows; ++row) {
+    const std::vector<char> before = near;
+    for (const auto& nodes : mesh.elements)
+      if (std::any_of(nodes.begin(), nodes.end(), [&](int i) { return before[static_cast<std::size_t>(i)] != 0; }))
+        for (const int i : nodes) near[static_cast<std::size_t>(i)] = 1;
+  }
+  return near;
+}
+
 bool holds(const Box& b, const Vec3& q) noexcept { return (q.array() >= b.low.array()).all() && (q.array() <= b.high.array()).all(); }
 
 }  // namespace
 
 WallMeetings::WallMeetings(const VesselMesh& mesh, double reach, double stiffness) : reach_(reach), stiffness_(stiffness) {
   const std::size_t parts = mesh.edge_ring.size();
-  std::vector<int> last(parts, 0);  // slab of the cut edge
-  for (std::size_t i = 0; i < mesh.slab.size(); ++i) {
-    int& most = last[static_cast<std::size_t>(mesh.node_part[i])];
-    most = std::max(most, mesh.slab[i]);
-  }
   rim_.resize(parts);
+  const std::vector<char> near = near_cut(mesh);
   std::vector<char> on_surface(mesh.slab.size(), 0);
   for (const WallFace& f : mesh.faces)
     for (const int c : f.corner) on_surface[static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(f.element)][static_cast<std::size_t>(c)])] = 1;
-  for (std::size_t i = 0; i < mesh.slab.size(); ++i) {
-    const auto part = static_cast<std::size_t>(mesh.node_part[i]);
-    if (on_surface[i] && mesh.slab[i] + kRows >= last[part]) rim_[part].push_back(static_cast<int>(i));
-  }
+  for (std::size_t i = 0; i < mesh.slab.size(); ++i)
+    if (on_surface[i] && near[i]) rim_[static_cast<std::size_t>(mesh.node_part[i])].push_back(static_cast<int>(i));
   std::size_t all = 0;
   for (const auto& nodes : rim_) all += nodes.size();
   around_.assign(mesh.slab.size(), -1);
+  turn_.assign(parts, 0);
   for (std::size_t part = 0; part < parts; ++part)
     for (const auto& nodes : inner_rings(mesh, static_cast<int>(part))) {
       const double area = ring_area(nodes, mesh.nodes), side = (mesh.nodes.col(nodes[1]) - mesh.nodes.col(nodes[0])).norm();
       if (area < side * side) continue;  // a row of a card
       rings_.push_back({nodes, area});
+      turn_[part] = std::max(turn_[part], static_cast<int>(nodes.size()));
       across_ = std::max(across_, kAcross * std::sqrt(rings_.back().area / std::numbers::pi));
       for (std::size_t k = 0; k < nodes.size(); ++k) around_[static_cast<std::size_t>(nodes[k])] = static_cast<int>(k);
       all += nodes.size();
@@ -94,7 +105,7 @@ void WallMeetings::close_lumen(const VesselMesh& mesh, const SurfaceTree& tree, 
 bool WallMeetings::meet_across(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x, int node, WallMeeting& m) noexcept {
   const Vec3 q = x.col(node);
   const auto own = static_cast<std::size_t>(node);
-  const int turn = static_cast<int>(rings_.front().nodes.size());
+  const int turn = turn_[static_cast<std::size_t>(mesh.node_part[own])];
   const auto beside = [&](int other) {
     const int apart = std::abs(around_[static_cast<std::size_t>(other)] - around_[own]);
     return 8 * std::min(apart, turn - apart) <= turn;

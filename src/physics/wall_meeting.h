@@ -54,7 +54,8 @@ class WallMeetings {
     double area = 0.0;                     // [m2], at first
   };
   std::vector<Ring> rings_;
-  std::vector<int> around_;                // of each inner node: which of its ring
+  std::vector<int> around_;                // of each inner node: which of its ring (rings past an opening begin behind it)
+  std::vector<int> turn_;                  // of each part: nodes of a whole ring
   double across_ = 0.0;                    // [m], how far from the wall across is looked for
   std::vector<WallMeeting> list_;
   std::vector<int> found_;

@@ -53,7 +53,7 @@ void append_blood(std::string& out, const BloodObservation& b) {
   }
   constexpr double kMlPerMin = 60e6, kMmHg = 133.322;
   out += "{\"clamps\":[";
-  for (std::size_t k = 0; k < b.off.size(); ++k) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(b.n_clamps); ++k) {
     const Quat& q = b.clamp_W[k].q;
     const double wxyz[4] = {q.w(), q.x(), q.y(), q.z()};
     out += k > 0 ? ",{\"position\":" : "{\"position\":";
@@ -94,7 +94,7 @@ json tissue_scene_json(const TissueDescription& t) {
   for (const auto& corners : t.triangles)
     for (const int i : corners) triangles.push_back(i);
   for (Eigen::Index k = 0; k < t.rest.size(); ++k) rest.push_back(std::round(t.rest.data()[k] * 1e8) / 1e8);
-  return {{"name", t.name}, {"kind", t.kind}, {"thickness", t.thickness}, {"radius", t.radius}, {"clamp_reach", t.clamp_reach}, {"triangles", triangles}, {"rest", rest}};
+  return {{"name", t.name}, {"kind", t.kind}, {"thickness", t.thickness}, {"radius", t.radius}, {"clamp_reach", t.clamp_reach}, {"second", t.second}, {"triangles", triangles}, {"rest", rest}};
 }
 
 json guide_json(const StitchGuide& guide) { return {{"in", place_json(guide.in)}, {"out", place_json(guide.out)}}; }

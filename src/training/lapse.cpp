@@ -6,27 +6,10 @@
 #include <numbers>
 #include <string_view>
 
+#include "training/cut_line.h"
+
 namespace filum {
 namespace {
-
-/// Where on the cut: (angle around the vessel, height along it) or (x along the cut, y across it) of places at rest.
-class CutLine {
- public:
-  explicit CutLine(const TissueDescription& d) : d_(d) {}
-  double angle(const Vec3& p) const { return angle_around(d_, p); }
-  double turn(const Vec3& a, const Vec3& b) const { return std::remainder(angle(b) - angle(a), 2.0 * std::numbers::pi); }
-  double along(const Vec3& a, const Vec3& b) const { return d_.lumen ? d_.radius * turn(a, b) : (b - a).dot(d_.cut_along); }
-  double across(const Vec3& a, const Vec3& b) const {
-    const Vec3 span = b - a;
-    if (d_.lumen) return std::abs(span.dot(d_.axis));
-    const Vec3 flat(span.x(), span.y(), 0.0);
-    return std::sqrt(std::max(0.0, flat.squaredNorm() - flat.dot(d_.cut_along) * flat.dot(d_.cut_along)));
-  }
-  double position(const Vec3& a, const Vec3& b) const { return d_.lumen ? d_.radius * (angle(a) + 0.5 * turn(a, b)) : 0.5 * (a + b).dot(d_.cut_along); }
-
- private:
-  const TissueDescription& d_;
-};
 
 Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut) {
   const PassObservation& p = t.passes[static_cast<std::size_t>(a)];
@@ -39,9 +22,10 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut)
   s.bite[1] = whole ? std::abs(q.bite_exit) : std::numeric_limits<double>::quiet_NaN();
   s.entry_angle = p.entry_angle;
   s.exit_angle = q.exit_angle;
-  s.obliquity = std::atan2(std::abs(cut.along(p.entry_rest, q.exit_rest)), cut.across(p.entry_rest, q.exit_rest));
+  const CutPlace in{p.entry_rest, p.side}, out{q.exit_rest, q.side};
+  s.obliquity = std::atan2(std::abs(cut.along(in, out)), cut.across(in, out));
   s.depth = std::min(p.depth_share, q.depth_share);
-  s.position = cut.position(p.entry_rest, q.exit_rest);
+  s.position = cut.position(in, out);
   s.tension = std::max(p.tension, q.tension);
   s.peak_force = std::max(p.peak_force, q.peak_force);
   s.torn = std::max(p.torn, q.torn);
@@ -50,11 +34,6 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut)
 }
 
 }  // namespace
-
-double angle_around(const TissueDescription& d, const Vec3& p) {
-  const Vec3 r = p - d.middle;
-  return std::atan2(r.dot(d.axis.cross(d.cut_along)), r.dot(d.cut_along));
-}
 
 LapseRules load_lapse_rules(const std::string& path) {
   const YamlNode file = YamlNode::load(path);
@@ -134,7 +113,7 @@ void find_back_walls(const LapseRules& rules, const TissueObservation& t, const 
   for (int k = 0; k + 1 < t.n_passes; ++k) {
     const PassObservation &in = t.passes[static_cast<std::size_t>(k)], &out = t.passes[static_cast<std::size_t>(k + 1)];
     if (!in.out || in.exit_depth < 0.5 || out.entry_depth < 0.5) continue;  // not through the lumen
-    const double turn = std::abs(cut.turn(in.exit_rest, out.entry_rest));
+    const double turn = cut.round_lumen({in.exit_rest, in.side}, {out.entry_rest, out.side});
     if (turn <= rules.back_wall) continue;
     const auto of = std::find_if(stitches.begin(), stitches.end(), [&](const Stitch& s) { return s.first == k || s.second == k; });
     const double time = static_cast<std::size_t>(k) < pass_time.size() ? pass_time[static_cast<std::size_t>(k)] : 0.0;
@@ -151,13 +130,14 @@ void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const Tiss
                      std::vector<Lapse>& found) {
   if (!scene.lumen || join.sector_gap.empty()) return;
   constexpr double kTurn = 2.0 * std::numbers::pi;
+  const CutLine cut(scene);
   const double width = kTurn / static_cast<double>(join.sector_gap.size());
   const auto wrapped = [](double a) { return a - kTurn * std::floor(a / kTurn); };
   std::vector<std::pair<double, int>> at;  // angle of each stitch, ascending
   const auto told = [&](int k) { return std::any_of(found.begin(), found.end(), [&](const Lapse& l) { return l.stitch == k && std::string_view(l.name) == "loose-knot"; }); };
   for (std::size_t k = 0; k < stitches.size(); ++k) {
     if (!stitches[k].joins) continue;
-    const double angle = wrapped(stitches[k].position / scene.radius);
+    const double angle = wrapped(stitches[k].position / cut.radius());
     at.emplace_back(angle, static_cast<int>(k));
     const auto sector = std::min(static_cast<std::size_t>(angle / width), join.sector_gap.size() - 1);
     const double gap = join.sector_gap[sector] / scene.thickness;

@@ -59,14 +59,10 @@ struct Lapse {
   const char* unit = "-";
 };
 
-/// [rad], around a vessel, of a place at rest.
-double angle_around(const TissueDescription& d, const Vec3& p);
-
-/// The cut of a card is straight, that of a vessel runs round its axis.
 std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<double>& pass_time, const TissueDescription& scene);
 std::vector<double> spacings_of(const std::vector<Stitch>& stitches);  // [m], between neighbours along the cut
 std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, double thickness);
-/// "back-wall": the needle came into the lumen at one place of the vessel and left it more than rules.back_wall around it.
+/// "back-wall": the needle came into the lumen at one place of the vessel and left it more than rules.back_wall around it (CutLine::round_lumen).
 void find_back_walls(const LapseRules& rules, const TissueObservation& tissue, const std::vector<double>& pass_time, const TissueDescription& scene,
                      const std::vector<Stitch>& stitches, std::vector<Lapse>& found);
 /// "thread-in-lumen", "edge-overlap".

@@ -47,6 +47,31 @@ GuidePlace place(const TissueDescription& t, const NeedleDescription& needle, co
   return p;
 }
 
+/// Beside the edge of one side of a cut that runs round no one axis, at this share of its length from the heel.
+GuidePlace beside_edge(const TissueDescription& t, const NeedleDescription& needle, std::size_t side, double share, double bite) {
+  const CutEdge& e = t.edges[side];
+  const auto outward = [&](const Vec3& p) { return Vec3((p - e.origin - (p - e.origin).dot(e.axis) * e.axis).normalized()); };
+  double whole = 0.0;
+  Vec3 middle = Vec3::Zero(), on_edge = e.rim.front();
+  for (std::size_t k = 0; k < e.rim.size(); ++k) {
+    whole += (e.rim[(k + 1) % e.rim.size()] - e.rim[k]).norm();
+    middle += e.rim[k] / static_cast<double>(e.rim.size());
+  }
+  double left = share * whole;
+  for (std::size_t k = 0; k < e.rim.size() && left >= 0.0; ++k) {
+    const Vec3 run = e.rim[(k + 1) % e.rim.size()] - e.rim[k];
+    on_edge = e.rim[k] + std::min(1.0, left / run.norm()) * run;
+    left -= run.norm();
+  }
+  const Vec3 away = side == 0 ? Vec3(on_edge - middle) : Vec3(-e.axis), out = outward(on_edge);
+  GuidePlace p;
+  p.vertex = nearest(t.rest, on_edge + bite * (away - away.dot(out) * out).normalized() + t.thickness * out);
+  p.at = t.rest.col(p.vertex);
+  const Vec3 up = outward(p.at);
+  p.path = needle_path(p.at, up, -(away - away.dot(up) * up).normalized(), needle.bend_radius, 2.0 * t.thickness);
+  return p;
+}
+
 StitchGuide guide(const TissueDescription& t, const NeedleDescription& needle, const Vec3& on_cut, const Vec3& outward, const Vec3& across, double bite) {
   StitchGuide g{place(t, needle, on_cut, outward, -across, bite), place(t, needle, on_cut, outward, across, bite)};
   g.out.path = {g.out.path.rbegin(), g.out.path.rend()};
@@ -70,6 +95,11 @@ std::vector<StitchGuide> stitch_guides(const TissueDescription& t, const NeedleD
     return guides;
   }
   for (const int k : {0, 4, 2, 6, 1, 3, 5, 7}) {  // stays at 180 degrees, then half way between
+    if (!t.edges[0].rim.empty()) {
+      guides.push_back({beside_edge(t, needle, 0, static_cast<double>(k) / kRound, bite), beside_edge(t, needle, 1, static_cast<double>(k) / kRound, bite)});
+      std::reverse(guides.back().out.path.begin(), guides.back().out.path.end());
+      continue;
+    }
     const double angle = 2.0 * std::numbers::pi * k / kRound;
     const Vec3 outward = std::cos(angle) * t.cut_along + std::sin(angle) * t.axis.cross(t.cut_along);
     guides.push_back(guide(t, needle, t.middle + t.radius * outward, outward, t.axis, bite));

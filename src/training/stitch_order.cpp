@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "training/cut_line.h"
 #include "training/stitch_knot.h"
 
 namespace filum {
@@ -100,7 +101,9 @@ void StitchOrder::observe(const Observation& o, std::vector<TaskEvent>& events) 
       continue;
     }
     Made m{half_, next_, {}, -1};
-    for (const int k : {half_, next_}) m.angle[static_cast<std::size_t>(pass(k).side != 0)] = angle_around(tissue_, 0.5 * (pass(k).entry_rest + pass(k).exit_rest));
+    const CutLine cut(tissue_);
+    for (const int k : {half_, next_})
+      m.angle[static_cast<std::size_t>(pass(k).side != 0)] = cut.angle({0.5 * (pass(k).entry_rest + pass(k).exit_rest), pass(k).side});
     half_ = -1;
     take(m, o.time, events);
   }

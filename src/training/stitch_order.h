@@ -1,8 +1,8 @@
 #pragma once
 // Techniques that ask for stitches in an order: stays at so many degrees from each other, the posterior wall first, a running thread.
 //
-// A stitch is made when thread lies in both its bites. Its place is where each of them is around its own stump, at rest, as angles from where the
-// vessel's angle is zero: a stitch that is straight on one stump and 30 degrees off on the other makes a dog-ear and is at neither place.
+// A stitch is made when thread lies in both its bites. Its place is where each of them is around its own stump or edge (CutLine), at rest, as angles from
+// where the vessel's angle is zero: a stitch that is straight on one stump and 30 degrees off on the other makes a dog-ear and is at neither place.
 // Goals of kind `stitch` are filled one after the other, whatever other goals stand between them. A stitch that the goal whose turn it is
 // does not ask for is out of turn: told once, and kept for a later goal that asks for it, since it cannot be unmade.
 // Neglects: bites pulled out again after the stitch was made (they stay made). Test: stitch_order_test.

@@ -26,7 +26,8 @@ Pose clamp_pose(const VesselModel& vessel, const ClampState& clamp, int which) n
   DoubleClamp now = vessel.clamp;
   now.gap = clamp.gap;
   now.turn = clamp.turn;
-  Pose X = stump_poses(now, vessel.shape.stretch * vessel.shape.length)[static_cast<std::size_t>(which)];
+  Pose X = stump_poses(now, vessel.shape.stretch * vessel.shape.length)[which == 1 ? 1 : 0];
+  if (which == 2) X = X * Pose{Vec3(0, 0, 2.0 * vessel.clamp.side->reach), Quat(0, 1, 0, 0)};
   if ((X.q * Vec3::UnitY()).z() < 0.0) X.q = X.q * Quat(0, 0, 0, 1);  // its arms stand out on both sides: the upper one
   return X;
 }
@@ -133,9 +134,10 @@ void BloodFlow::step(VesselState& s, const std::vector<InstrumentParameters>& to
 
 void BloodFlow::observe(const VesselState& s, BloodObservation& o) noexcept {
   o.present = true;
-  for (int k = 0; k < 2; ++k) {
+  o.n_clamps = n_clamps(model_);
+  for (int k = 0; k < o.n_clamps; ++k) {
     o.clamp_W[static_cast<std::size_t>(k)] = clamp_pose(model_, s.clamp, k);
-    o.off[static_cast<std::size_t>(k)] = s.blood.off[static_cast<std::size_t>(k)] != 0;
+    o.off[static_cast<std::size_t>(k)] = k < 2 && s.blood.off[static_cast<std::size_t>(k)] != 0;
   }
   o.wrong_order = s.blood.wrong_order != 0;
   o.pressure = s.pressure;

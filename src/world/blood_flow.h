@@ -5,6 +5,7 @@
 // than 100 mmHg in a tenth of a second, to that of the balance of artery, join and what lies behind; the second stump follows the first.
 // The gaps of the cut edge are measured one node a step, round and round.
 // Forceps hold the vessel shut where its centre line passes between their jaws and these are as near as the pressed wall lets them be.
+// End to side, blood comes down the vessel with the opening and goes on through the stump; that vessel's far clamp stays on.
 // An emptied stretch takes its share of the second stump's pressure away (pressure is one number for each stump).
 // Neglects: the arms' contact with thread, needle and tissue; what lies behind a clamp stays where the clamp held it.
 // Test: blood_flow_test.
@@ -19,8 +20,10 @@
 
 namespace filum {
 
-/// Where a clamp is: origin on the vessel's axis at the held end, z towards the cut, y up its arms (as high as they can be seen).
+/// Where a clamp is: origin on the vessel's axis at the held end, z towards the cut, y up its arms (as high as they can be seen). End to side there is a
+/// third one, at the far end of the vessel with the opening, which stays on.
 Pose clamp_pose(const VesselModel& vessel, const ClampState& clamp, int which) noexcept;
+inline int n_clamps(const VesselModel& vessel) noexcept { return vessel.clamp.side ? 3 : 2; }
 double clamp_reach(const VesselModel& vessel) noexcept;  // [m], of its arm from the axis
 
 class BloodFlow {

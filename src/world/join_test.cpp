@@ -48,6 +48,18 @@ std::vector<Stretch> between_bites(const TrackState& s, double whole) {
   return list;
 }
 
+/// Unit, from the first vessel to the second through the cut: the vessel's axis, or out of an opening as it now stands.
+Vec3 way_across(const VesselModel& vessel, const Points& x) {
+  if (!vessel.clamp.side) return vessel.clamp.X_WB.q * Vec3::UnitZ();
+  const std::vector<int>& ring = vessel.mesh.edge_ring[0];
+  Vec3 area = Vec3::Zero(), middle = Vec3::Zero();
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    area += Vec3(x.col(ring[k])).cross(Vec3(x.col(ring[(k + 1) % ring.size()])));
+    middle += x.col(ring[k]) / static_cast<double>(ring.size());
+  }
+  return area.normalized() * ((middle - vessel.clamp.X_WB.p).dot(area) < 0.0 ? -1.0 : 1.0);
+}
+
 double lumen_area(const std::vector<LumenRing>& rings) {
   std::vector<double> areas;
   for (const LumenRing& r : rings) areas.push_back(r.area);
@@ -77,7 +89,7 @@ bool let_blood_in(World& world, const JoinTestOptions& o) {
 }  // namespace
 
 double edge_overlap(const VesselModel& vessel, const Points& x) {
-  const Vec3 axis = vessel.clamp.X_WB.q * Vec3::UnitZ(), middle = vessel.clamp.X_WB.p;
+  const Vec3 axis = way_across(vessel, x), middle = vessel.clamp.X_WB.p;
   const auto outward = [&](int i) {
     const Vec3 r = x.col(i) - middle;
     return Vec3((r - r.dot(axis) * axis).normalized());
@@ -131,11 +143,13 @@ JoinTestReport join_test(const Model& model, const State& state, const JoinTestO
   }
   report.leak = leak.flow;
   report.area = leak.area;
-  std::vector<LumenRing> rings = lumen_rings(mesh, x, 0), second = lumen_rings(mesh, x, 1);
-  const double usual = 0.5 * (lumen_area(rings) + lumen_area(second));
-  const auto held = static_cast<std::ptrdiff_t>(rings.size() / 4);  // next to the clamps, which keep a vessel at the width that it had empty
+  const Passage way = passage_of(mesh);
+  std::vector<LumenRing> rings = lumen_rings(way, x);
+  const auto second = rings.begin() + static_cast<std::ptrdiff_t>(way.second);
+  const double usual = 0.5 * (lumen_area({rings.begin(), second}) + lumen_area({second, rings.end()}));
+  const auto held = static_cast<std::ptrdiff_t>(way.second / 4);  // next to the clamps, which keep a vessel at the width that it had empty
+  rings.erase(rings.end() - held, rings.end());
   rings.erase(rings.begin(), rings.begin() + held);
-  rings.insert(rings.end(), second.rbegin(), second.rend() - held);  // the second stump's run from its clamp
   const Patency lumen = assess_lumen(rings, usual, blood);
   report.narrowing = lumen.narrowing;
   report.through = lumen.flow;

@@ -54,8 +54,9 @@ inline constexpr int kLeakSectors = 8;
 /// Clamps and blood of a vessel.
 struct BloodObservation {
   bool present = false;                   // two stumps in clamps that can be taken off
-  std::array<Pose, 2> clamp_W;            // upstream, downstream: at the held end, z towards the cut, y up the clamp's arms
-  std::array<bool, 2> off{};
+  int n_clamps = 2;
+  std::array<Pose, 3> clamp_W;            // upstream, downstream, one that stays on: at the held end, z towards the cut, y up the clamp's arms
+  std::array<bool, 3> off{};
   bool wrong_order = false;               // the downstream one came off first
   std::array<double, 2> pressure{};       // [Pa], in each stump
   std::array<double, kLeakSectors> leak{};  // [m3/s], out of the join, from where the vessel's angle is zero
@@ -78,11 +79,19 @@ struct TissueObservation {
   BloodObservation blood;
 };
 
+/// One side of a cut, at rest.
+struct CutEdge {
+  std::vector<Vec3> rim;                  // [m], the inner rim in turn
+  Vec3 axis = Vec3::UnitY(), origin = Vec3::Zero();  // unit, [m], of its own vessel
+};
+
 struct TissueDescription {
   std::string name, kind;                 // "card" | "vessel"
   double thickness = 0.0;                 // [m]
   Vec3 cut_along = Vec3::UnitY();         // unit, direction of the cut at rest; of a vessel: where its angle is zero
-  bool lumen = false;                     // two stumps of a vessel: the cut runs round an axis
+  bool lumen = false;                     // two vessels: the cut runs round an axis or, where they are given, along the edges
+  int second = 0;                         // end to side: the first vertex of the vessel that is sewn to the other's side; else 0
+  std::array<CutEdge, 2> edges;           // of a cut that runs round no one axis (end to side), the same way round from their heels
   Vec3 axis = Vec3::UnitY(), middle = Vec3::Zero();  // unit; [m], between the cut edges, at rest
   double radius = 0.0;                    // [m], of the outer surface at rest
   double clamp_reach = 0.0;               // [m], of a clamp's arm from the vessel's axis; 0: no clamps

@@ -5,6 +5,7 @@
 #include "world/model_file.h"
 #include "world/needle_model.h"
 #include "world/vessel_scene.h"
+#include "world/vessel_state.h"
 #include "world/wall_file.h"
 
 namespace filum {
@@ -65,6 +66,28 @@ void read_blood(const YamlNode& node, VesselModel& v) {
   v.slack = node.quantity_or("slack", "mmHg", 0.0, {-1e4, 0.0});
 }
 
+double outer_radius(const TubeShape& s) { return make_tube(s).nodes.topRows<2>().colwise().norm().maxCoeff(); }  // [m], as first made
+
+/// `side:` of a vessel: the second stump leans over an opening in the side of a whole vessel of the same preset. Angles count from the heel.
+void read_side(const YamlNode& node, const TubeShape& stump, VesselModel& v) {
+  SideHold hold;
+  hold.lean = node.quantity("lean", "deg", Range::between(0.4, 0.5 * std::numbers::pi));
+  hold.reach = 0.5 * node.quantity("length", "mm", Range::positive());
+  hold.radius = v.radius = outer_radius(stump);
+  TubeShape vessel = stump;
+  vessel.along = node.integer("along", 8, 200);
+  SideOpening opening;
+  opening.length = node.quantity("opening", "mm", Range::between(0.5 * hold.radius, 1.4 * hold.reach));
+  opening.width = node.quantity("width", "mm", Range::between(0.2 * hold.radius, 2.0 * hold.radius));
+  opening.across = 2 * node.integer("half_across", 1, (stump.around - 4) / 2);
+  opening.along = node.integer("opening_along", 2, vessel.along - 4);
+  if (2 * (opening.across + opening.along) > kMostEdgeNodes) node.refuse("opening_along", "at most 32 elements across and along the opening together");
+  v.over = node.quantity("over", "deg", Range::between(-std::numbers::pi, std::numbers::pi));
+  v.clamp.side = hold;
+  v.cut_along = v.clamp.X_WB.q * Vec3::UnitZ();
+  v.mesh = make_end_to_side(vessel, opening, stump, v.clamp);
+}
+
 /// Two stumps of a preset in a double clamp, cut edges facing, the bar along y. Where x is least counts as the angle zero.
 void read_stumps(const std::string& root, const YamlNode& node, Model& m, VesselModel& v) {
   v.name = node.text("preset");
@@ -89,10 +112,11 @@ void read_stumps(const std::string& root, const YamlNode& node, Model& m, Vessel
   v.clamp.X_WB = {node.vec3("centre", "mm"), Quat(bar)};
   if (node.has("blood")) read_blood(node.map("blood"), v);
   v.wall.tolerance = node.quantity_or("tolerance", "uN", v.wall.tolerance, {1e-8, 1e-4});
-  v.cut_along = -Vec3::UnitX();
   v.lumen = true;
-  v.mesh = make_stumps(s, v.clamp);
   v.shape = s;
+  if (node.has("side")) return read_side(node.map("side"), s, v);
+  v.cut_along = -Vec3::UnitX();
+  v.mesh = make_stumps(s, v.clamp);
   for (Eigen::Index i = 0; i < v.mesh.nodes.cols(); ++i) {
     const Vec3 r = v.mesh.nodes.col(i) - v.clamp.X_WB.p;
     v.radius = std::max(v.radius, (r - r.y() * Vec3::UnitY()).norm());

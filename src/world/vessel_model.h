@@ -1,6 +1,7 @@
 #pragma once
 // Tissue to be stitched: the constant part of a scene.
 
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,12 @@ struct VesselModel {
   WallOptions wall;
   TrackMaterial track;
   double thickness = 0.0;             // [m]
-  Vec3 cut_along = Vec3::UnitX();     // unit, direction of the cut at rest; of a vessel: where its angle is zero
-  bool lumen = false;                 // two stumps in a double clamp
+  Vec3 cut_along = Vec3::UnitX();     // unit, direction of the cut at rest; of a vessel: where its angle is zero (end to side: at the heel)
+  bool lumen = false;                 // two vessels in a double clamp
   DoubleClamp clamp;                  // of these, as first made
   double closed_gap = 0.0;            // [m], where it can be slid to
-  TubeShape shape;                    // of each
+  double over = std::numbers::pi;     // [rad], by which it is turned over
+  TubeShape shape;                    // of each stump
   double radius = 0.0;                // [m], outer, as first made
   Circulation circulation;            // that the clamps keep out
   double slack = 0.0;                 // [Pa], transmural, as long as they do: below zero the stumps lie flat

@@ -1,7 +1,6 @@
 #include "world/vessel_scene.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "base/hash.h"
 
@@ -24,6 +23,24 @@ PassObservation::State state_of(const NeedleTrack& t) noexcept {
 std::uint64_t hash_point(const WallPoint& p, std::uint64_t h) noexcept {
   const std::array<double, 4> row = {static_cast<double>(p.element), p.local.x(), p.local.y(), p.local.z()};
   return hash_bytes(row.data(), sizeof(row), h);
+}
+
+/// Both sides of a cut at rest, their rims the same way round, each from its node furthest towards where the angle is zero.
+std::array<CutEdge, 2> cut_edges(const VesselModel& v) {
+  std::array<CutEdge, 2> edges;
+  const auto pose = stump_poses(v.clamp, v.shape.stretch * v.shape.length);
+  std::array<Vec3, 2> area{Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t part = 0; part < 2; ++part) {
+    std::vector<Vec3>& rim = edges[part].rim;
+    for (const int i : v.mesh.edge_ring[part]) rim.push_back(v.mesh.nodes.col(i));
+    for (std::size_t k = 0; k < rim.size(); ++k) area[part] += 0.5 * (rim[k] - rim[0]).cross(rim[(k + 1) % rim.size()] - rim[0]);
+    if (area[part].dot(area[0]) < 0.0) std::reverse(rim.begin(), rim.end());
+    const auto first = std::max_element(rim.begin(), rim.end(), [&](const Vec3& p, const Vec3& q) { return p.dot(v.cut_along) < q.dot(v.cut_along); });
+    std::rotate(rim.begin(), first, rim.end());
+    edges[part].axis = pose[part].q * Vec3::UnitZ();
+    edges[part].origin = pose[part].p;
+  }
+  return edges;
 }
 
 std::uint64_t hash_blood(const BloodState& b, std::uint64_t h) noexcept {
@@ -83,6 +100,11 @@ void VesselScene::describe(TissueDescription& d) const {
   d.lumen = model_.lumen;
   d.axis = model_.clamp.X_WB.q * Vec3::UnitZ();
   d.middle = model_.clamp.X_WB.p;
+  if (model_.clamp.side) {
+    const auto& part = model_.mesh.node_part;
+    d.second = static_cast<int>(std::find(part.begin(), part.end(), 1) - part.begin());
+    d.edges = cut_edges(model_);
+  }
   d.radius = model_.radius;
   d.clamp_reach = model_.lumen ? clamp_reach(model_) : 0.0;
   d.rest = model_.mesh.nodes;
@@ -112,7 +134,7 @@ void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observatio
   };
   if ((pressed & kNext) != 0) {
     c.over = c.over != 0 ? 0 : 1;
-    say("clamp-turned", c.over != 0 ? std::numbers::pi : 0.0, "rad");
+    say("clamp-turned", c.over != 0 ? model_.over : 0.0, "rad");
   }
   if ((pressed & kCut) != 0) c.closing = c.closing != 0 ? 0 : 1;
   if ((let_go & kCut) != 0) say("clamp-slid", c.gap, "m");
@@ -121,7 +143,7 @@ void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observatio
   now.gap = c.gap;
   now.turn = c.turn;
   const double gap = (buttons & kCut) == 0 ? c.gap : c.closing != 0 ? model_.closed_gap : model_.clamp.gap;
-  now = approach(now, gap, model_.clamp.turn + (c.over != 0 ? std::numbers::pi : 0.0), model_.wall.dt, kSlideSpeed, kTurnSpeed);
+  now = approach(now, gap, model_.clamp.turn + (c.over != 0 ? model_.over : 0.0), model_.wall.dt, kSlideSpeed, kTurnSpeed);
   c.gap = now.gap;
   c.turn = now.turn;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -99,6 +100,120 @@ TEST(VesselMesh, GradingMakesShortElementsAtTheEdge) {
   const double first = m.nodes(2, ring) - m.nodes(2, 0), last = m.nodes(2, m.n_nodes() - 1) - m.nodes(2, m.n_nodes() - 1 - ring);
   EXPECT_NEAR(first / last, 3.0, 0.3);
   EXPECT_NEAR(m.nodes(2, m.n_nodes() - 1), s.length, 1e-12);
+}
+
+/// Worst corner of all elements, as first made and without stress.
+double worst(const VesselMesh& m) {
+  double least = 1.0;
+  for (int e = 0; e < m.n_elements(); ++e) least = std::min({least, scaled_jacobian(corners(m, e)), scaled_jacobian(m.stress_free[static_cast<std::size_t>(e)])});
+  return least;
+}
+
+TEST(VesselMesh, ScaledJacobianOfKnownCorners) {
+  Corners brick;
+  for (int a = 0; a < 8; ++a) brick.col(a) = Vec3(a & 1 ? 3 : 0, a & 2 ? 1 : 0, a & 4 ? 0.1 : 0);
+  EXPECT_NEAR(scaled_jacobian(brick), 1.0, 1e-12);
+  Corners sheared = brick;
+  sheared.row(0) += brick.row(1);  // 45 degrees
+  EXPECT_NEAR(scaled_jacobian(sheared), std::sqrt(0.5), 1e-12);
+  brick.row(2) *= -1.0;
+  EXPECT_LT(scaled_jacobian(brick), 0.0);
+}
+
+TubeShape long_tube() {
+  TubeShape s;
+  s.length = 4.4e-3;
+  s.around = 20;
+  s.along = 24;
+  return s;
+}
+
+TEST(VesselMesh, OpeningInTheSideIsAnEllipseWithoutSlivers) {
+  TubeShape shapes[3] = {long_tube(), long_tube(), long_tube()};
+  shapes[1].opening_angle = 1.4;
+  shapes[2].stretch = 1.3;
+  for (const TubeShape& s : shapes) {
+    SideOpening o;
+    o.length = 1.35e-3;
+    o.width = 0.6e-3;
+    const VesselMesh m = make_opened_tube(s, o);
+    EXPECT_GT(worst(m), 0.5);
+    expect_closed(m);
+    ASSERT_EQ(m.edge_ring[0].size(), 28u);
+    const double half = 0.5 * s.stretch * s.length;
+    double middle = 0.0;  // radius of the middle of the wall at the far end
+    for (int i = 0; i < m.n_nodes(); ++i)
+      if (m.slab[static_cast<std::size_t>(i)] == 0) middle += m.nodes.col(i).head<2>().norm() / 40.0;
+    for (std::size_t k = 0; k < 28; ++k) {
+      const Vec3 p = m.nodes.col(m.edge_ring[0][k]);
+      EXPECT_NEAR(std::hypot(std::atan2(p.y(), p.x()) * middle / (0.5 * o.width), (p.z() - half) / (0.5 * o.length)), 1.0, 0.02);
+      EXPECT_NEAR(m.edge_share[0][k] + m.edge_share[0][(28 - k) % 28], k == 0 ? 0.0 : 1.0, 1e-9) << "the same on both sides";
+    }
+    const Vec3 heel = m.nodes.col(m.edge_ring[0][0]), toe = m.nodes.col(m.edge_ring[0][14]);
+    EXPECT_NEAR(heel.z() - toe.z(), o.length, 1e-9);
+    EXPECT_NEAR(heel.y(), 0.0, 1e-12);
+    EXPECT_NEAR(m.edge_share[0][14], 0.5, 1e-9);
+    EXPECT_EQ(m.held.size(), 80u) << "both ends";
+    for (std::size_t i = 1; i < m.slab.size(); ++i) EXPECT_GE(m.slab[i], m.slab[i - 1]);
+    for (const auto& nodes : m.elements)
+      for (const int i : nodes)
+        for (const int j : nodes) EXPECT_LE(std::abs(m.slab[static_cast<std::size_t>(i)] - m.slab[static_cast<std::size_t>(j)]), 1);
+  }
+}
+
+TEST(VesselMesh, OpeningTakesItsShareOfTheTube) {
+  TubeShape s = long_tube();
+  s.around = 80;
+  s.along = 80;
+  SideOpening o;
+  o.across = 20;
+  o.along = 26;
+  const VesselMesh m = make_opened_tube(s, o);
+  double volume = 0.0;
+  for (int e = 0; e < m.n_elements(); ++e) volume += signed_volume(corners(m, e));
+  const double whole = std::numbers::pi * (0.45 * 0.45 - 0.35 * 0.35) * 4.4e-9, gone = whole - volume;
+  EXPECT_NEAR(gone, 0.25 * std::numbers::pi * o.length * o.width * s.thickness, 0.03 * gone) << "ellipse on the middle of the wall";
+}
+
+TEST(VesselMesh, OpeningThatDoesNotFitIsRefused) {
+  SideOpening o;
+  o.width = 2e-3;
+  EXPECT_THROW(make_opened_tube(long_tube(), o), std::invalid_argument);
+  o = {};
+  o.across = 5;
+  EXPECT_THROW(make_opened_tube(long_tube(), o), std::invalid_argument);
+  o.across = 18;
+  EXPECT_THROW(make_opened_tube(long_tube(), o), std::invalid_argument);
+}
+
+TEST(VesselMesh, BevelledCutIsPlaneAndKeepsTheVolume) {
+  TubeShape s;
+  s.bevel = 0.25 * std::numbers::pi;
+  for (const double opening_angle : {0.0, 1.4}) {
+    s.opening_angle = opening_angle;
+    const VesselMesh m = make_tube(s);
+    TubeShape square = s;
+    square.bevel = 0.0;
+    const VesselMesh plain = make_tube(square);
+    double volume = 0.0, same = 0.0;
+    for (int e = 0; e < m.n_elements(); ++e) {
+      volume += signed_volume(corners(m, e));
+      same += signed_volume(corners(plain, e));
+    }
+    EXPECT_NEAR(volume, same, 1e-9 * same);
+    for (const WallFace& f : m.faces)
+      if (f.surface == WallSurface::edge)
+        for (const int c : f.corner) {
+          const Vec3 p = m.nodes.col(m.elements[static_cast<std::size_t>(f.element)][static_cast<std::size_t>(c)]);
+          EXPECT_NEAR(p.z() - p.x(), s.length, 1e-12);
+        }
+    EXPECT_GT(worst(m), 0.6) << "45 degrees leave 0.71";
+    expect_closed(m);
+    const auto& share = m.edge_share[0];
+    EXPECT_NEAR(share[12], 0.5, 1e-12);
+    EXPECT_LT(share[6], 0.5 * share[12] + 1e-9);
+    EXPECT_GT(share[7] - share[6], 1.2 * (share[1] - share[0])) << "long steps at the sides of the ellipse, in arc";
+  }
 }
 
 }  // namespace

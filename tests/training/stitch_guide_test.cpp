@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "oblique_edges.h"
+
 namespace filum {
 namespace {
 
@@ -64,6 +66,26 @@ TEST(StitchGuide, NeedleGoesInAtARightAngleAndDeepEnough) {
   EXPECT_LT(direction.dot(outward), -0.998);
   EXPECT_NEAR(depth, -2.0 * t.thickness, 1e-9);
   EXPECT_GT((g.out.path.back() - g.out.at).dot(outward), 0.3e-3) << "the second comes out";
+}
+
+TEST(StitchGuide, RoundAnOpeningHeelAndToeFirst) {
+  TissueDescription t = testing_shapes::oblique_edges();
+  t.triangles.push_back({0, 1, 2});
+  t.rest.resize(3, 2 * 400);
+  for (int k = 0; k < 400; ++k) {  // a ring round each edge, 0.2 mm away on the surface
+    const Vec3 p = t.edges[0].rim[static_cast<std::size_t>(k)], q = t.edges[1].rim[static_cast<std::size_t>(k)];
+    t.rest.col(k) = p + 0.2e-3 * p.normalized() + 0.1e-3 * Vec3::UnitZ();
+    t.rest.col(400 + k) = q - 0.2e-3 * t.edges[1].axis + 0.1e-3 * (q - t.edges[1].origin).normalized();
+  }
+  const auto guides = stitch_guides(t, needle(), {});
+  ASSERT_EQ(guides.size(), 8u);
+  EXPECT_NEAR(guides[0].in.at.y(), 0.9e-3, 0.02e-3) << "the heel";
+  EXPECT_NEAR(guides[1].in.at.y(), -0.9e-3, 0.02e-3) << "the toe";
+  for (const StitchGuide& g : guides) {
+    EXPECT_LT(g.in.vertex, 400) << "into the vessel";
+    EXPECT_GE(g.out.vertex, 400) << "out of the stump";
+    ASSERT_FALSE(g.in.path.empty());
+  }
 }
 
 TEST(StitchGuide, FiveOnACardWithinItsWidth) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "oblique_edges.h"
 #include "training/needle_watch.h"
 #include "training/score.h"
 #include "training/task.h"
@@ -27,7 +28,8 @@ TissueDescription vessel() {
 /// A made-up vessel in which stitches appear.
 class Vessel {
  public:
-  explicit Vessel(const std::string& task) : task_(load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + task + "/task.yaml")), order_(task_.needle->goals, vessel()) {
+  explicit Vessel(const std::string& task, const TissueDescription& tissue = vessel())
+      : task_(load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + task + "/task.yaml")), tissue_(tissue), order_(task_.needle->goals, tissue_) {
     o_.n_nodes = 4;  // a straight thread, so that there is no knot
     o_.positions.setZero(3, 4);
     o_.arc.resize(4);
@@ -71,9 +73,23 @@ class Vessel {
     p.state = PassObservation::State::thread;
     p.arc = 1e-3 * o_.tissue.n_passes;
     const double a = angle * kDegree;
+    if (!tissue_.edges[0].rim.empty()) {
+      p.entry_rest = p.exit_rest = at_share(tissue_.edges[static_cast<std::size_t>(side)].rim, angle / 360.0);
+      return;
+    }
     p.entry_rest = p.exit_rest = kRadius * Vec3(-std::cos(a), 0.0, std::sin(a)) + (side == 0 ? -0.2e-3 : 0.2e-3) * Vec3::UnitY();
   }
+  static Vec3 at_share(const std::vector<Vec3>& rim, double share) {
+    double whole = 0.0, left = 0.0;
+    const auto side = [&](std::size_t k) { return (rim[(k + 1) % rim.size()] - rim[k]).norm(); };
+    for (std::size_t k = 0; k < rim.size(); ++k) whole += side(k);
+    left = (share - std::floor(share)) * whole;
+    std::size_t k = 0;
+    for (; left > side(k); ++k) left -= side(k);
+    return rim[k];
+  }
   Task task_;
+  TissueDescription tissue_;
   StitchOrder order_;
   Observation o_;
   std::vector<TaskEvent> events_;
@@ -150,6 +166,21 @@ TEST(StitchOrder, VeinsStaysStandAcross) {
   EXPECT_EQ(v.order().out_of_turn(), 1) << "ten degrees from a stay is none of the six between";
   for (const double a : {0.0, 180.0, 45.0, 135.0, 225.0, 318.0}) v.stitch(a);
   EXPECT_EQ(v.made(), "111");
+}
+
+TEST(StitchOrder, EndToSideHeelToeAndThenEitherWall) {
+  Vessel v("end-to-side", testing_shapes::oblique_edges());
+  for (const double a : {3.0, 178.0, 270.0, 315.0, 225.0, 90.0, 45.0, 135.0}) v.stitch(a);
+  EXPECT_EQ(v.made(), "11111111");
+  EXPECT_EQ(v.order().out_of_turn(), 0);
+  Vessel wrong("end-to-side", testing_shapes::oblique_edges());
+  wrong.stitch(0.0);
+  wrong.stitch(180.0, 150.0);
+  EXPECT_EQ(wrong.made(), "10000000") << "at the toe of the opening but not of the stump";
+  wrong.stitch(180.0);
+  wrong.stitch(90.0);
+  EXPECT_EQ(wrong.made(), "11000000") << "the wall that lies behind came first";
+  EXPECT_EQ(wrong.order().out_of_turn(), 2);
 }
 
 TEST(StitchOrder, ARunningThreadGoesOnTheSameWayRound) {

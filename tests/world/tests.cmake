@@ -3,6 +3,7 @@ foreach(name blade_arm blood_flow brain_scene brain_section cortex falx fixtures
 endforeach()
 filum_test(world/needle_scene)
 filum_test(world/vessel_scene)
+filum_test(world/end_to_side)
 filum_test(world/wall_file filum_evidence)
 if(TARGET filum)
   add_test(NAME cli.needle_demo COMMAND bash ${PROJECT_SOURCE_DIR}/tests/cli/needle_demo_test.sh $<TARGET_FILE:filum> ${PROJECT_SOURCE_DIR})

@@ -130,7 +130,7 @@ export class Tissue {
   /// The tissue's own colour, and that of the blood behind it.
   private paint(blood: TissueState["blood"]): void {
     const colours = this.surface.geometry.getAttribute("color") as THREE.BufferAttribute, shade = new THREE.Color();
-    if (blood && !this.shares) this.shares = sharesAlong(this.shape.rest, blood);
+    if (blood && !this.shares) this.shares = sharesAlong(this.shape.rest, blood, this.shape.second);
     for (let k = 0; k < colours.count; ++k) {
       shade.copy(this.own);
       if (blood && this.shares) shade.lerp(kInside, 0.7 * fullness(blood, this.shares[k]));

@@ -29,11 +29,19 @@ export function fullness(blood: Blood, share: number): number {
   return Math.min(1, (blood.pressure[share < 0.5 ? 0 : 1] ?? 0) / kFull);
 }
 
-/// Where each vertex lies along the lumen, 0 at the upstream clamp, 1 at the downstream one.
-export function sharesAlong(rest: readonly number[], blood: Blood): Float32Array {
+/// Where each vertex lies along the lumen, 0 at the upstream clamp, 1 at the downstream one. `second`: the first vertex of a vessel that is sewn to the
+/// other's side: its half runs from its edge to its clamp, and the other vessel is all upstream.
+export function sharesAlong(rest: readonly number[], blood: Blood, second = 0): Float32Array {
+  if (second > 0) return sharesOfSide(rest, blood, second);
   const a = new THREE.Vector3(...blood.clamps[0].position), b = new THREE.Vector3(...blood.clamps[1].position);
   const run = b.clone().sub(a), square = Math.max(1e-12, run.lengthSq()), p = new THREE.Vector3();
   return Float32Array.from({ length: rest.length / 3 }, (_, k) => Math.min(1, Math.max(0, p.fromArray(rest, 3 * k).sub(a).dot(run) / square)));
+}
+
+function sharesOfSide(rest: readonly number[], blood: Blood, second: number): Float32Array {
+  const end = new THREE.Vector3(...blood.clamps[1].position), p = new THREE.Vector3();
+  const away = Float32Array.from({ length: rest.length / 3 }, (_, k) => p.fromArray(rest, 3 * k).distanceTo(end)), furthest = away.subarray(second).reduce((a, b) => Math.max(a, b), 1e-6);
+  return away.map((distance, k) => (k < second ? 0 : Math.max(0.5, 1 - (0.5 * distance) / furthest)));
 }
 
 class Clamp {
@@ -115,7 +123,7 @@ export class Vessel {
   private readonly walls: THREE.MeshLambertMaterial[];
 
   constructor(shape: TissueShape, materials: Materials, colour: number, painted: boolean, private readonly floor: number) {
-    this.walls = [0, 1].map(() => new THREE.MeshLambertMaterial({ color: colour, side: THREE.DoubleSide }));
+    this.walls = (shape.second > 0 ? [0, 1, 2] : [0, 1]).map(() => new THREE.MeshLambertMaterial({ color: colour, side: THREE.DoubleSide }));
     this.clamps = this.walls.map((wall) => new Clamp(shape, materials, wall));
     this.bar = new THREE.Mesh(new THREE.CylinderGeometry(0.22, 0.22, 1, 20), materials.bright);
     const look = { color: kBlood, transparent: true, opacity: 0.93 };
@@ -126,7 +134,7 @@ export class Vessel {
       this.jets.push(new THREE.Mesh(spray, blood));
     }
     this.pool = new THREE.Mesh(new THREE.CircleGeometry(1, 64), blood);
-    this.shreds = isLiving(shape.name) ? new Shreds(shape) : null;
+    this.shreds = isLiving(shape.name) && shape.second === 0 ? new Shreds(shape) : null;
     this.group.add(...this.clamps.map((one) => one.group), this.bar, ...this.drops, ...this.jets, this.pool);
     if (this.shreds) this.group.add(this.shreds.lines);
     for (const one of [...this.drops, ...this.jets, this.pool]) one.visible = false;
@@ -135,7 +143,7 @@ export class Vessel {
   update(state: TissueState, blood: Blood, time: number): void {
     blood.clamps.forEach((one, k) => this.clamps[k]?.update(one));
     this.placeBar(blood);
-    this.walls.forEach((wall, k) => wall.color.set(0xd98f86).lerp(kRed, k === 0 ? 0.75 : 0.75 * fullness(blood, 1)));
+    this.walls.forEach((wall, k) => wall.color.set(0xd98f86).lerp(kRed, k === 1 ? 0.75 * fullness(blood, 1) : 0.75));
     const axis = this.axisOf(blood), middle = this.middleOf(blood), at = new THREE.Vector3();
     blood.leak.forEach((rate, k) => {
       const drop = this.drops[k], jet = this.jets[k];
@@ -159,18 +167,20 @@ export class Vessel {
     this.shreds?.update(state.positions);
   }
 
-  private axisOf(blood: Blood): THREE.Vector3 { return new THREE.Vector3(...blood.clamps[1].position).sub(new THREE.Vector3(...blood.clamps[0].position)).normalize(); }
-  private middleOf(blood: Blood): THREE.Vector3 { return new THREE.Vector3(...blood.clamps[0].position).add(new THREE.Vector3(...blood.clamps[1].position)).multiplyScalar(0.5 * kMm); }
+  /// Of the straight line that the cut lies on: the last clamp holds its other end.
+  private axisOf(blood: Blood): THREE.Vector3 { return farEnd(blood).sub(new THREE.Vector3(...blood.clamps[0].position)).normalize(); }
+  private middleOf(blood: Blood): THREE.Vector3 { return new THREE.Vector3(...blood.clamps[0].position).add(farEnd(blood)).multiplyScalar(0.5 * kMm); }
 
-  /// The bar that joins the clamps, beside the vessel and below it, while both are on.
+  /// The bar that joins the clamps of one line, beside the vessel and below it, while both are on.
   private placeBar(blood: Blood): void {
-    const ends = this.clamps.map((one) => one.group.localToWorld(new THREE.Vector3(0, 0, -0.35)));
+    const ends = [this.clamps[0], this.clamps[this.clamps.length - 1]].map((one) => one.group.localToWorld(new THREE.Vector3(0, 0, -0.35)));
     const span = ends[1].clone().sub(ends[0]), down = new THREE.Vector3(0, 0, -1.15);
-    this.bar.visible = blood.clamps.every((one) => !one.off);
+    this.bar.visible = !blood.clamps[0].off && !blood.clamps[blood.clamps.length - 1].off;
     this.bar.position.copy(ends[0]).addScaledVector(span, 0.5).add(down);
     this.bar.scale.set(1, span.length() + 1, 1);
     this.bar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), span.normalize());
   }
 }
 
+const farEnd = (blood: Blood): THREE.Vector3 => new THREE.Vector3(...blood.clamps[blood.clamps.length - 1].position);
 const kRed = new THREE.Color(kBlood);

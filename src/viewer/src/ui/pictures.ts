@@ -161,6 +161,13 @@ function joinPicture(label: string, first: number[], then: number[]): SVGElement
     then.map((a) => `<g opacity=".45">${stitch(a, 36)}</g>`).join("") + first.map((a) => stitch(a, 54)).join(""), label);
 }
 
+/// A stump that leans over an opening in the side of a vessel, with stays at heel and toe.
+function sidePicture(label: string): SVGElement {
+  return field(`<rect x="-64" y="4" width="128" height="34" fill="#cf8378" stroke="#5b3a34" stroke-width=".8"/><rect x="-64" y="28" width="128" height="6" fill="#ffffff48"/><ellipse cy="12" rx="27" ry="6.5" fill="#7c3b36"/>
+    <path d="M-25 8L24 6L62 -34L36 -56Z" fill="#cf8378" stroke="#5b3a34" stroke-width=".8"/><path d="M-52 0H-46V42H-52ZM46 0H52V42H46Z" fill="#METAL" stroke="#2b333b" stroke-width=".6"/>
+    <path d="M-30 16L-22 4C-34 -6 -40 -20 -44 -30M24 2L30 16C40 8 50 -2 58 -8" ${kThread}/>`, label);
+}
+
 /// Two stumps held together by one thread that runs round them.
 function runningPicture(label: string): SVGElement {
   const turns = [-26, -13, 0, 13].map((y) => `<path d="M-9 ${y}L9 ${y + 5}" ${kThread}/><path d="M9 ${y + 5}L-9 ${y + 13}" ${kThread} opacity=".35"/>`).join("");
@@ -203,6 +210,7 @@ const kScenes: Record<string, (title: string) => SVGElement> = {
   "triangulation-120": (title) => joinPicture(title, [90, 210, 330], [30, 150, 270]),
   "posterior-wall-first": (title) => joinPicture(title, [225, 270, 315], [0, 45, 90, 135, 180]),
   "continuous-suture": runningPicture,
+  "end-to-side": sidePicture,
   "card-stitches": (title) => cardPicture(title, 2),
   "ten-stitches": (title) => cardPicture(title, 10),
   "needle-course": (title) => cardPicture(title, 0),
