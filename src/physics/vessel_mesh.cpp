@@ -151,40 +151,48 @@ class HarmonicMap {
   HarmonicMap(const Grid& g, const SideOpening& o, double step, double row) : g_(g), move_(static_cast<std::size_t>(g.n[0] * (g.n[1] + 1)), {0.0, 0.0}) {
     const std::vector<std::array<int, 2>> edge = g.edge();
     std::vector<char> fixed(move_.size(), 0);
-    const double a = 0.5 * o.length, b = 0.5 * o.width, whole = arc(a, b, TubeMap::kTurn);
-    double psi = 0.0;
+    const double a = 0.5 * o.length, b = 0.5 * o.width;
     for (std::size_t k = 0; k < edge.size(); ++k) {
-      const double wanted = whole * share(4.0 * static_cast<double>(k) / static_cast<double>(edge.size()), o);
-      for (int n = 0; n < 30; ++n) psi -= (arc(a, b, psi) - wanted) / std::hypot(b * std::cos(psi), a * std::sin(psi));  // Newton's method
+      const double psi = angle(4.0 * static_cast<double>(k) / static_cast<double>(edge.size()), o);
       const auto& [i, j] = edge[k];
       at(i, j) = {b * std::sin(psi) - step * i, a * std::cos(psi) - row * (j - 0.5 * g.n[1])};
       fixed[index(i, j)] = 1;
     }
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
+    double most = row;  // [m], move of the last sweep (Gauss-Seidel)
+    for (int sweep = 0; sweep < kMostSweeps && most > kSettled * row; ++sweep) {
+      most = 0.0;
       for (int j = 1; j < g.n[1]; ++j)
-        for (int i = 0; i < g.n[0]; ++i) {
-          if (fixed[index(i, j)] || g.in_gap(i, j)) continue;
-          for (std::size_t c = 0; c < 2; ++c) at(i, j)[c] = 0.25 * (at(i - 1, j)[c] + at(i + 1, j)[c] + at(i, j - 1)[c] + at(i, j + 1)[c]);
-        }
+        for (int i = 0; i < g.n[0]; ++i)
+          for (std::size_t c = 0; c < 2 && !fixed[index(i, j)] && !g.in_gap(i, j); ++c) {
+            const double mean = 0.25 * (at(i - 1, j)[c] + at(i + 1, j)[c] + at(i, j - 1)[c] + at(i, j + 1)[c]);
+            most = std::max(most, std::abs(mean - at(i, j)[c]));
+            at(i, j)[c] = mean;
+          }
+    }
   }
   const std::array<double, 2>& operator()(int i, int j) const { return move_[index(i, j)]; }
 
  private:
-  static constexpr int kSweeps = 2000;
+  static constexpr int kMostSweeps = 20000;
+  static constexpr double kSettled = 1e-9;
   static constexpr double kCorner = 0.3;  // of a quarter of the ellipse, from its ends along the tube: where the gap's corners come (DECISIONS)
-  /// Of the ellipse's length, at this number of quarters of the gap's border.
-  static double share(double quarters, const SideOpening& o) {
+  /// psi at this number of quarters of the gap's border.
+  static double angle(double quarters, const SideOpening& o) {
     const double corner = o.across / static_cast<double>(o.across + o.along), part = quarters - std::floor(quarters);
     const bool back = static_cast<int>(quarters) % 2 == 1;
     const double f = back ? 1.0 - part : part, g = f < corner ? f / corner * kCorner : kCorner + (f - corner) / (1.0 - corner) * (1.0 - kCorner);
-    return 0.25 * (std::floor(quarters) + (back ? 1.0 - g : g));
+    constexpr double kQuarter = 0.25 * TubeMap::kTurn;
+    const double a = 0.5 * o.length, b = 0.5 * o.width, wanted = g * arc(a, b, kQuarter);
+    double psi = g * kQuarter;
+    for (int n = 0; n < 30; ++n) psi -= (arc(a, b, psi) - wanted) / std::hypot(b * std::cos(psi), a * std::sin(psi));  // Newton's method
+    return kQuarter * (std::floor(quarters) + (back ? 1.0 : 0.0)) + (back ? -psi : psi);
   }
   std::size_t index(int i, int j) const { return static_cast<std::size_t>(j * g_.n[0] + (i + g_.n[0]) % g_.n[0]); }
   std::array<double, 2>& at(int i, int j) { return move_[index(i, j)]; }
   /// Of the ellipse (b sin psi, a cos psi), from psi = 0.
   static double arc(double a, double b, double psi) {
     constexpr int kPieces = 400;
-    double sum = 0.0;  // midpoint rule, of a smooth periodic function
+    double sum = 0.0;  // midpoint rule
     for (int k = 0; k < kPieces; ++k) {
       const double p = psi * (k + 0.5) / kPieces;
       sum += std::hypot(b * std::cos(p), a * std::sin(p)) * psi / kPieces;
