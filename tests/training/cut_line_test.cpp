@@ -95,7 +95,7 @@ TEST(CutLine, LapsesOfStitchesEndToSide) {
   }
   const auto spacings = spacings_of({stitches[0], stitches[1]});
   EXPECT_NEAR(spacings[0], 0.5 * kPi * cut.radius(), 0.02 * cut.radius());
-  const LapseRules rules = load_lapse_rules(std::string(FILUM_SOURCE_DIR) + "/curricula/lapses/end-to-side.yaml");
+  const LapseRules rules = load_lapse_rules(FILUM_SOURCE_DIR "/curricula/lapses/end-to-side.yaml");
   std::vector<Lapse> found;
   find_back_walls(rules, o, times, t, stitches, found);
   ASSERT_EQ(found.size(), 1u);
