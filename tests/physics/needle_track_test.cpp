@@ -153,6 +153,34 @@ TEST(NeedleTrack, WallThatComesUponAPointThatStandsStillMeetsIt) {
   EXPECT_LE(steps, 4) << "10 um away";
 }
 
+/// Where a face tilts, a point that rests on it can be carried past it by rounding: it is then within the tissue without having crossed anything.
+TEST(NeedleTrack, PointCarriedPastTheSurfaceIsMetAllTheSame) {
+  CardShape shape;
+  VesselWall wall(make_card(shape), {{"card", shape.thickness, WallLaw::hooke(1e6, 0.3)}}, {});
+  WallState w = wall.first_state();
+  wall.refit(w);
+  NeedleShape needle;
+  NeedleTracks tracks(plain_track(5e-3, 1e-3, 5.0), needle, wall);
+  const double L = needle.length();
+  std::vector<RodTether> on_needle, on_thread;
+  on_needle.reserve(8);
+  TrackEvent events[8];
+  const auto meets = [&](double before, double now, const Vec3& along) {  // heights of the point over the card [m]
+    Pose X_WN;
+    X_WN.q = Quat::FromTwoVectors(needle.tangent(L), along);
+    X_WN.p = Vec3(0.0, -0.3e-3, 0.5 * shape.thickness + now) - X_WN.q * needle.point(L);
+    TrackState s;
+    s.point_before = X_WN * needle.point(L) + Vec3(0.0, 0.0, before - now);
+    tracks.hold(wall, w, s, X_WN, nullptr, on_needle, on_thread);
+    tracks.follow(wall, w, s, X_WN, nullptr, 2e-3, on_needle, on_thread, events, 8);
+    return s.point.kind == PointContact::Kind::outside;
+  };
+  EXPECT_TRUE(meets(-0.1e-6, -2e-6, -Vec3::UnitZ()));
+  EXPECT_FALSE(meets(2e-6, 0.1e-6, -Vec3::UnitZ())) << "still outside";
+  EXPECT_FALSE(meets(-4e-6, -2e-6, -Vec3::UnitZ())) << "on its way out";
+  EXPECT_FALSE(meets(-0.1e-6, -2e-6, Vec3::UnitZ())) << "the point looks out of the tissue";
+}
+
 TEST(NeedleTrack, NodeRuleOfTheSeedGoesInStairsTheTrackDoesNot) {
   RigOptions o;
   o.track = plain_track(5e-3, 1e-3, 5.0);
