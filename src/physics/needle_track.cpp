@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/thread_grasp.h"
 
@@ -11,6 +12,7 @@ namespace {
 constexpr double kPointGrip = 1.0;  // [-], friction of the point where it rests: it digs in
 constexpr double kBack = 0.1e-6;      // [m], by which the point must leave the next layer to be off it: less is the wall's own trembling
 constexpr double kBeside = 0.1e-3;    // [m], a free point's reach: no wall moves as far in a step
+constexpr double kLift = 1e-6;        // [m], by which a point that is let go stands off the surface at least
 constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind a knot to have left it
 
 double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
@@ -190,13 +192,14 @@ void NeedleTracks::take_point(VesselWall& wall, const WallState& w, TrackState& 
                               double dt, Events& e) noexcept {
   const double L = needle_.length();
   const Vec3 tip = X_WN * needle_.point(L), along = X_WN.q * needle_.tangent(L);
+  const Vec3 before = std::exchange(s.point_before, tip);
   s.point.force = 0.0;
   if (point_tether_ >= 0 && s.point.kind != PointContact::Kind::none) {
     const RodTether& t = on_needle[static_cast<std::size_t>(point_tether_)];
     load_wall(wall, w, s.point.at, t, dt);
     switch (s.point.kind) {
       case PointContact::Kind::outside:
-        rest_on_surface(wall, w, s, t, along, e);
+        rest_on_surface(wall, w, s, t, tip, along, e);
         break;
       case PointContact::Kind::within:
         advance(wall, w, s, t, tip, along);
@@ -208,9 +211,8 @@ void NeedleTracks::take_point(VesselWall& wall, const WallState& w, TrackState& 
         break;
     }
   } else if (s.open < 0 && s.point.kind == PointContact::Kind::none) {
-    find_contact(wall, w, s, tip, along);
+    find_contact(wall, w, s, before, tip, along);
   }
-  s.point_before = tip;
 }
 
 void NeedleTracks::mark_point(const VesselWall& wall, const WallState& w, const TrackState& s) noexcept {
@@ -226,25 +228,28 @@ void NeedleTracks::carry_point(const VesselWall& wall, const WallState& w, Track
   if (near_) s.point_before += wall.position(w, beside_) - beside_W_;
 }
 
-void NeedleTracks::find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& tip, const Vec3& along) noexcept {
-  WallCrossing c = wall.crossing(w, s.point_before, tip);
+void NeedleTracks::find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& before, const Vec3& tip, const Vec3& along) noexcept {
+  WallCrossing c = wall.crossing(w, before, tip);
   if (!c.found) {  // a face that tilted past the point while it was carried along is not crossed any more
     c = wall.nearest(w, tip, kBeside);
     c.found = c.found && c.fraction < 0.0;
   }
-  if (!c.found || (tip - s.point_before).dot(c.normal) >= 0.0 || along.dot(c.normal) >= 0.0) return;
+  if (!c.found || (tip - before).dot(c.normal) >= 0.0 || along.dot(c.normal) >= 0.0) return;
   s.point.kind = PointContact::Kind::outside;
   s.point.at = c.point;
   s.point.normal = c.normal;
   s.point.threshold = layer(c.layer).puncture;
 }
 
-void NeedleTracks::rest_on_surface(VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept {
+void NeedleTracks::rest_on_surface(VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& tip, const Vec3& along,
+                                   Events& e) noexcept {
   const WallCrossing here = wall.nearest(w, t.anchor, 1e-4);
   if (here.found) s.point.normal = here.normal;
   const double normal = t.force.dot(s.point.normal);
   if (normal <= 0.0) {
     s.point = {};
+    const WallCrossing off = wall.nearest(w, tip, kBeside);  // outside by definition: a hair within it would never be seen to come in again
+    if (off.found && off.fraction < kLift) s.point_before = wall.position(w, off.point) + kLift * off.normal;
     return;
   }
   s.point.force = normal;

@@ -95,10 +95,10 @@ class NeedleTracks {
   void take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt) noexcept;
   void tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, const Vec3& load, Events& e) noexcept;
   void take_point(VesselWall& wall, const WallState& w, TrackState& s, const Pose& X_WN, const std::vector<RodTether>& on_needle, double dt, Events& e) noexcept;
-  void rest_on_surface(VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept;
+  void rest_on_surface(VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& tip, const Vec3& along, Events& e) noexcept;
   void advance(const VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& tip, const Vec3& along) noexcept;
   void break_through(const VesselWall& wall, const WallState& w, TrackState& s, const RodTether& t, const Vec3& along, Events& e) noexcept;
-  void find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& tip, const Vec3& along) noexcept;
+  void find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& before, const Vec3& tip, const Vec3& along) noexcept;
   void open_track(const VesselWall& wall, const WallState& w, TrackState& s, double angle) noexcept;
   void lay_knot(const VesselWall& wall, TrackState& s, const WallPoint& at) noexcept;
   void drop_passed(TrackState& s, Events& e) noexcept;

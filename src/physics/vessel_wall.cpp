@@ -90,6 +90,19 @@ std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallEl
   return blocks;
 }
 
+/// About what an energy is wrong by. A point's energy is what is left of terms of the size of its shear modulus, so that the sum misses by as much however
+/// small it is; taken for less, steps that led down by less than that were cut to nothing, one after the other. [J]
+double rounding(const WallElements& elements, int n, bool single_precision, double energy) noexcept {
+  double thickness = 0.0, shear = 0.0, volume = 0.0;
+  for (const WallLayer& l : elements.layers()) {
+    thickness += l.thickness;
+    shear += l.law.mu * l.thickness;
+  }
+  for (int e = 0; e < n; ++e) volume += elements.volume(e);
+  const double unit = 0.5 * (single_precision ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon());
+  return std::max((single_precision ? 1e-6 : 1e-12) * std::abs(energy), unit * volume * shear / thickness);
+}
+
 }  // namespace
 
 VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const WallOptions& options)
@@ -328,7 +341,7 @@ void VesselWall::direction(const WallHistory& h) noexcept {
 
 /// Goes along the direction, less far if that turns elements inside out or the energy does not fall.
 bool VesselWall::advance(const WallState& state) noexcept {
-  const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = (options_.single_precision ? 1e-6 : 1e-12) * std::abs(energy_);
+  const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = rounding(elements_, mesh_.n_elements(), options_.single_precision, energy_);
   double step = std::min({1.0, kLonger * taken_, longest_move_ / direction_.cwiseAbs().maxCoeff()});
   for (int k = 0; k < kShortenings; ++k) {
     trial_x_ = x_ + step * direction_.reshaped(3, x_.cols());
