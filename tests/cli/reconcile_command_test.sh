@@ -6,36 +6,9 @@ trap 'rm -rf "$work"' EXIT
 failures=0
 fail() { echo "reconcile_command_test: $*"; failures=$((failures + 1)); }
 
-# block NAME SHARE: a block of 2 kPa that relaxes by a share in 4 s, pressed at two rates
-block() {
-  mkdir -p "$work/data/$1"
-  cat >"$work/data/$1/experiment.yaml" <<'YAML'
-format: filum-experiment/1
-title: Block
-source: made by the test
-rig: tissue-block
-specimen: { shape: cuboid, length: "5 mm", width: "5 mm", height: "5 mm" }
-model: { file: brain/linear, free: [youngs_modulus] }
-channels:
-  - { name: time, column: t, unit: s }
-  - { name: displacement, column: u, unit: mm, kind: input }
-  - { name: force, column: F, unit: mN, kind: output, noise: "0.02 mN" }
-trials:
-  - { file: a.csv, protocol: { mode: compression, rate: "1 mm/s" }, repeat: A }
-  - { file: b.csv, protocol: { mode: compression, rate: "1 mm/s" }, repeat: A }
-  - { file: c.csv, protocol: { mode: compression, rate: "4 mm/s" }, repeat: B }
-YAML
-  for run in a:1:1 b:1:2 c:4:3; do
-    IFS=: read -r name speed seed <<<"$run"
-    awk -v speed="$speed" -v seed="$seed" -v g="$2" 'BEGIN { srand(seed); print "t,u,F"; h = 0.02; q = 0
-      for (i = 0; i <= 300; ++i) { t = i * h; u = speed * t; if (u > 0.5) u = 0.5; u = -u
-        if (i > 0) q = (q * (1 - 0.125 * h) + 0.125 * h * (u + last)) / (1 + 0.125 * h); last = u
-        n = -6; for (k = 0; k < 12; ++k) n += rand()
-        printf "%.4f,%.6f,%.6f\n", t, u, 10 * (u - g * q) + 0.02 * n } }' >"$work/data/$1/$name.csv"
-  done
-}
-block relaxes 0.4
-block firm 0
+source "$root/tests/reconcile/make_block.sh"
+make_block "$work/data/relaxes" 0.4 4
+make_block "$work/data/firm" 0 4
 
 # call CODE ARGUMENTS...: runs it
 call() {
@@ -65,7 +38,7 @@ call 0 "$work/data/relaxes" --out "$work/t3" --repeatable --threads 3
 diff -r "$work/t1" "$work/t3" >"$work/diff" || fail "threads change the report: $(head -c 300 "$work/diff")"
 
 # many: a bad one is named and the others are solved; finished ones are left alone unless asked for
-block bad 0
+make_block "$work/data/bad" 0 4
 sed -i 's/^0.0400,/0.0100,/' "$work/data/bad/b.csv"
 mkdir "$work/data/no-dataset"
 call 2 --all "$work/data" --out "$work/many"

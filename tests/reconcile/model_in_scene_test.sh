@@ -6,33 +6,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "$1"; exit 1; }
 
-mkdir "$work/block"
-cat >"$work/block/experiment.yaml" <<'YAML'
-format: filum-experiment/1
-title: Relaxing block
-source: made by the test
-rig: tissue-block
-specimen: { shape: cuboid, length: "5 mm", width: "5 mm", height: "5 mm" }
-model: { file: brain/linear, free: [youngs_modulus] }
-channels:
-  - { name: time, column: t, unit: s }
-  - { name: displacement, column: u, unit: mm, kind: input }
-  - { name: force, column: F, unit: mN, kind: output, noise: "0.02 mN" }
-trials:
-  - { file: a.csv, protocol: { mode: compression, rate: "1 mm/s" }, repeat: A }
-  - { file: b.csv, protocol: { mode: compression, rate: "1 mm/s" }, repeat: A }
-  - { file: c.csv, protocol: { mode: compression, rate: "4 mm/s" }, repeat: B }
-  - { file: d.csv, protocol: { mode: compression, rate: "4 mm/s" }, repeat: B }
-YAML
-# ramp to 0.5 mm and hold; F = E A/h (u - g q), q' = (u - q)/tau, E = 2 kPa, g = 0.5, tau = 2 s; a sum of twelve uniform numbers is the noise
-for run in a:1:1 b:1:2 c:4:3 d:4:4; do
-  IFS=: read -r name speed seed <<<"$run"
-  awk -v speed="$speed" -v seed="$seed" 'BEGIN { srand(seed); print "t,u,F"; h = 0.02; q = 0
-    for (i = 0; i <= 500; ++i) { t = i * h; u = speed * t; if (u > 0.5) u = 0.5; u = -u
-      if (i > 0) q = (q * (1 - 0.25 * h) + 0.25 * h * (u + last)) / (1 + 0.25 * h); last = u
-      n = -6; for (k = 0; k < 12; ++k) n += rand()
-      printf "%.4f,%.6f,%.6f\n", t, u, 10 * (u - 0.5 * q) + 0.02 * n } }' >"$work/block/$name.csv"
-done
+source "$root/tests/reconcile/make_block.sh"
+make_block "$work/block" 0.5 2 500 1 "a:1:A b:1:A c:4:B d:4:B"
 "$filum" reconcile "$work/block" --out "$work/out" --json >"$work/report.json" || fail "reconcile failed: $(cat "$work/report.json")"
 grep -q '"name":"viscoelastic-relaxation"' "$work/report.json" || fail "not named: $(head -c 600 "$work/report.json")"
 [ -f "$work/out/model.yaml" ] || fail "no model.yaml"

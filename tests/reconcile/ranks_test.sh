@@ -10,32 +10,9 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_
 ldd "$filum" | grep -qi -E "libmpi|opencv" && fail "the program needs MPI or OpenCV: $(ldd "$filum" | grep -i -E 'libmpi|opencv')"
 
 # blocks of 2 kPa, each with another share of relaxation; every fifth has none
+source "$root/tests/reconcile/make_block.sh"
 for i in 01 02 03 04 05 06 07 08 09 10; do
-  mkdir -p "$work/data/block-$i"
-  cat >"$work/data/block-$i/experiment.yaml" <<'YAML'
-format: filum-experiment/1
-title: Block
-source: made by the test
-rig: tissue-block
-specimen: { shape: cuboid, length: "5 mm", width: "5 mm", height: "5 mm" }
-model: { file: brain/linear, free: [youngs_modulus] }
-channels:
-  - { name: time, column: t, unit: s }
-  - { name: displacement, column: u, unit: mm, kind: input }
-  - { name: force, column: F, unit: mN, kind: output, noise: "0.02 mN" }
-trials:
-  - { file: a.csv, protocol: { mode: compression, rate: "1 mm/s" }, repeat: A }
-  - { file: b.csv, protocol: { mode: compression, rate: "1 mm/s" }, repeat: A }
-  - { file: c.csv, protocol: { mode: compression, rate: "4 mm/s" }, repeat: B }
-YAML
-  for run in a:1:1 b:1:2 c:4:3; do
-    IFS=: read -r name speed seed <<<"$run"
-    awk -v speed="$speed" -v seed="$((10#$i * 10 + seed))" -v g="$(((10#$i % 5) * 12))" 'BEGIN { srand(seed); print "t,u,F"; h = 0.02; q = 0
-      for (i = 0; i <= 300; ++i) { t = i * h; u = speed * t; if (u > 0.5) u = 0.5; u = -u
-        if (i > 0) q = (q * (1 - 0.25 * h) + 0.25 * h * (u + last)) / (1 + 0.25 * h); last = u
-        n = -6; for (k = 0; k < 12; ++k) n += rand()
-        printf "%.4f,%.6f,%.6f\n", t, u, 10 * (u - g / 100 * q) + 0.02 * n } }' >"$work/data/block-$i/$name.csv"
-  done
+  make_block "$work/data/block-$i" "$(printf '0.%02d' $((10#$i % 5 * 12)))" 2 300 $((10#$i * 10 + 1))
 done
 
 all() { "$mpiexec" -n "$1" "$filum" reconcile --all "$work/data" --out "$2" --repeatable --root "$root" >"$work/log-$1" 2>&1; }
