@@ -60,31 +60,31 @@ std::string shown(const nlohmann::ordered_json& value, double scale) {
   return text;
 }
 
-void print_tremor(const nlohmann::ordered_json& t) {
-  std::printf("tremor, tool %d, %s space, %s: ", t["tool"].get<int>(), t["space"].get<std::string>().c_str(),
+void print_tremor(const nlohmann::ordered_json& t, const Streams& io) {
+  std::fprintf(io.out, "tremor, tool %d, %s space, %s: ", t["tool"].get<int>(), t["space"].get<std::string>().c_str(),
               t["window"].get<std::string>().c_str());
   if (!t["resolved"].get<bool>()) {
-    std::printf("not resolved: %s\n", t.value("why", "").c_str());
+    std::fprintf(io.out, "not resolved: %s\n", t.value("why", "").c_str());
   } else {
-    std::printf("peak %s Hz, width %s Hz\n", shown(t["peak_hz"], 1.0).c_str(), shown(t["half_power_width_hz"], 1.0).c_str());
+    std::fprintf(io.out, "peak %s Hz, width %s Hz\n", shown(t["peak_hz"], 1.0).c_str(), shown(t["half_power_width_hz"], 1.0).c_str());
   }
   if (!t["measured"].get<bool>()) return;
   for (const auto& band : t["bands"])
-    std::printf("  %4.0f-%2.0f Hz  rms %s um  (noise floor %s um)\n", band["from_hz"].get<double>(), band["to_hz"].get<double>(),
+    std::fprintf(io.out, "  %4.0f-%2.0f Hz  rms %s um  (noise floor %s um)\n", band["from_hz"].get<double>(), band["to_hz"].get<double>(),
                 shown(band["rms_m"], 1e6).c_str(), shown(band["noise_floor_rms_m"], 1e6).c_str());
 }
 
-void print_text(const nlohmann::ordered_json& report) {
-  for (const auto& t : report["tremor"]) print_tremor(t);
+void print_text(const nlohmann::ordered_json& report, const Streams& io) {
+  for (const auto& t : report["tremor"]) print_tremor(t, io);
   for (const auto& s : report["smoothness"]) {
     if (!s.contains("sparc")) continue;
-    std::printf("smoothness, tool %d, %s space: SPARC %s, LDLJ %s (median of %d movements)\n", s["tool"].get<int>(),
+    std::fprintf(io.out, "smoothness, tool %d, %s space: SPARC %s, LDLJ %s (median of %d movements)\n", s["tool"].get<int>(),
                 s["space"].get<std::string>().c_str(), shown(s["sparc"]["median"], 1.0).c_str(),
                 shown(s["ldlj"]["median"], 1.0).c_str(), s["sparc"]["n"].get<int>());
   }
   for (const auto& g : report["grasp_force"]) {
     if (!g.contains("summary")) continue;
-    std::printf("grasp force, tool %d (%s): %d grasps, peak %s N, excess over the slip limit %s N\n", g["tool"].get<int>(),
+    std::fprintf(io.out, "grasp force, tool %d (%s): %d grasps, peak %s N, excess over the slip limit %s N\n", g["tool"].get<int>(),
                 g["source"].get<std::string>().c_str(), g["grasps"].get<int>(), shown(g["summary"]["peak_n"]["median"], 1.0).c_str(),
                 shown(g["summary"]["excess_over_slip_limit_n"]["median"], 1.0).c_str());
   }
@@ -96,7 +96,7 @@ void write(const char* option, const std::string& path, const std::string& text)
   if (!file.flush()) throw InputError(option, "file", path, "a file that can be written");
 }
 
-int run(const AnalyseOptions& o) {
+int run(const AnalyseOptions& o, const Streams& io) {
   AnalysisInput input;
   for (const std::string& file : o.files) input.sessions.push_back(open_session(file));
   if (!o.clamped.empty()) input.clamped = open_session(o.clamped);
@@ -105,9 +105,9 @@ int run(const AnalyseOptions& o) {
   if (!o.plot.empty()) write("--plot", o.plot, scatter_svg(report.panels, o.files));
   if (!o.page.empty()) write("--page", o.page, report_page(report));
   if (o.json) {
-    print_json(report.json);
+    print_json(io.out, report.json);
   } else {
-    print_text(report.json);
+    print_text(report.json, io);
   }
   return kDone;
 }
@@ -123,7 +123,7 @@ void add_analyse(CLI::App& app, Action& action) {
   command->add_option("--plot", o->plot, "Write scatter plots to this SVG file");
   command->add_option("--page", o->page, "Write the result as one HTML page to this file");
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

@@ -67,7 +67,7 @@ DrivenTask open_task(const std::string& root, const std::string& task) {
 }
 
 /// All benches but those of tasks that have no demonstration, which are named on stderr.
-std::vector<std::string> possible_benches(const std::string& root) {
+std::vector<std::string> possible_benches(const std::string& root, const Streams& io) {
   std::vector<std::string> names;
   for (const std::string& name : bench_names()) {
     std::string task = name.starts_with(kTaskBench) ? name.substr(std::string(kTaskBench).size()) : "";
@@ -75,7 +75,7 @@ std::vector<std::string> possible_benches(const std::string& root) {
     if (task.empty() || std::filesystem::exists(demonstration_file(root, task))) {
       names.push_back(name);
     } else {
-      std::fprintf(stderr, "filum: %s is left out: %s does not exist\n", name.c_str(),
+      std::fprintf(io.err, "filum: %s is left out: %s does not exist\n", name.c_str(),
                    demonstration_file(root, task).c_str());
     }
   }
@@ -102,15 +102,15 @@ nlohmann::ordered_json json_of(const BenchResult& r) {
           {"reference", {{"name", r.reference_name}, {"p50_ms", r.reference_p50_ms}}}};
 }
 
-void print_line(const BenchResult& r) {
-  std::printf("%-18s %5d %8d %6.2f %6d %8.3f %8.3f %8.3f %9.2f %12.3f %8.2f\n", r.name.c_str(), r.nodes,
+void print_line(const BenchResult& r, const Streams& io) {
+  std::fprintf(io.out, "%-18s %5d %8d %6.2f %6d %8.3f %8.3f %8.3f %9.2f %12.3f %8.2f\n", r.name.c_str(), r.nodes,
               r.contacts, r.dt_ms, r.steps, r.p50_ms, r.p99_ms, r.max_ms, r.real_time_factor,
               r.reference_p50_ms, r.p50_ms / r.reference_p50_ms);
   if (r.processor_mean_ms > 0.0)
-    std::printf("    processor time: p50 %.3f, p99 %.3f, mean %.3f ms\n", r.processor_p50_ms, r.processor_p99_ms, r.processor_mean_ms);
-  for (const auto& [name, ms] : r.stages) std::printf("    %-40s %9.4f\n", name.c_str(), ms);
-  for (const auto& [name, ms] : r.slow_stages) std::printf("    in the slowest hundredth: %-24s %9.4f\n", name.c_str(), ms);
-  std::fflush(stdout);
+    std::fprintf(io.out, "    processor time: p50 %.3f, p99 %.3f, mean %.3f ms\n", r.processor_p50_ms, r.processor_p99_ms, r.processor_mean_ms);
+  for (const auto& [name, ms] : r.stages) std::fprintf(io.out, "    %-40s %9.4f\n", name.c_str(), ms);
+  for (const auto& [name, ms] : r.slow_stages) std::fprintf(io.out, "    in the slowest hundredth: %-24s %9.4f\n", name.c_str(), ms);
+  std::fflush(io.out);
 }
 
 /// Whether scenes survive hands that do anything, and how late their steps were.
@@ -137,33 +137,33 @@ nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o)
           {"deepest_share", worst.deepest}, {"longest_step_ms", worst.slowest_ms}, {"late_steps", worst.late}, {"solver_trouble_events", worst.trouble}, {"apart_steps", worst.apart}};
 }
 
-int run_wild_hands(const BenchOptions& o) {
+int run_wild_hands(const BenchOptions& o, const Streams& io) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   bool sound = true;
   for (const std::string& task : o.names.empty() ? kWildTasks : o.names) {
     list.push_back(wild_json(task, o));
     sound = sound && list.back()["faults"].empty();
-    if (!o.common.json) std::printf("%s\n", list.back().dump().c_str());
-    std::fflush(stdout);
+    if (!o.common.json) std::fprintf(io.out, "%s\n", list.back().dump().c_str());
+    std::fflush(io.out);
   }
-  if (o.common.json) print_json({{"machine", machine_text()}, {"wild", list}});
+  if (o.common.json) print_json(io.out, {{"machine", machine_text()}, {"wild", list}});
   return sound ? kDone : kFailed;
 }
 
-int run(const BenchOptions& o) {
-  if (o.wild > 0) return run_wild_hands(o);
-  const auto names = o.names.empty() ? possible_benches(o.common.root) : o.names;
+int run(const BenchOptions& o, const Streams& io) {
+  if (o.wild > 0) return run_wild_hands(o, io);
+  const auto names = o.names.empty() ? possible_benches(o.common.root, io) : o.names;
   if (!o.common.json) {
-    std::printf("%s\n%-18s %5s %8s %6s %6s %8s %8s %8s %9s %12s %8s\n", machine_text().c_str(), "bench",
+    std::fprintf(io.out, "%s\n%-18s %5s %8s %6s %6s %8s %8s %8s %9s %12s %8s\n", machine_text().c_str(), "bench",
                 "nodes", "contacts", "dt ms", "steps", "p50 ms", "p99 ms", "max ms", "real time",
                 "reference ms", "p50/ref");
   }
   const auto opener = [&](const std::string& task) { return open_task(o.common.root, task); };
-  const auto results = run_benches(names, opener, o.common.json ? BenchProgress() : print_line);
+  const auto results = run_benches(names, opener, o.common.json ? BenchProgress() : [&io](const BenchResult& r) { print_line(r, io); });
   if (o.common.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const BenchResult& r : results) list.push_back(json_of(r));
-    print_json({{"machine", machine_text()}, {"benches", list}});
+    print_json(io.out, {{"machine", machine_text()}, {"benches", list}});
   }
   return kDone;
 }
@@ -178,7 +178,7 @@ void add_bench(CLI::App& app, Action& action) {
   command->add_option("--wild", o->wild, "Instead: so many seeds of violent random hands on the tasks named (default: one of every kind)")->check(CLI::Range(1, 1000000));
   command->add_option("--wild-seconds", o->wild_seconds, "Scene time of each seed")->check(CLI::Range(0.01, 3600.0));
   add_common(*command, o->common);
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -56,35 +55,41 @@ bool read_value(SerialForceps& forceps, CalibrationGuide& guide) {
   return read;
 }
 
-std::vector<CalibrationPoint> guide_through(SerialForceps& forceps, CalibrationGuide guide) {
+/// Waits for Enter; false when the input has ended.
+bool entered(std::FILE* in) {
+  int read = std::fgetc(in);
+  while (read != '\n' && read != EOF) read = std::fgetc(in);
+  return read == '\n';
+}
+
+std::vector<CalibrationPoint> guide_through(SerialForceps& forceps, CalibrationGuide guide, const Streams& io) {
   while (!guide.done()) {
-    std::fprintf(stderr, "%s, then press Enter: ", guide.instruction().c_str());
-    std::string line;
-    if (!std::getline(std::cin, line)) throw InputError("calibrate", "standard input", "ended", "Enter for each value");
+    std::fprintf(io.err, "%s, then press Enter: ", guide.instruction().c_str());
+    if (!entered(io.in)) throw InputError("calibrate", "standard input", "ended", "Enter for each value");
     if (!read_value(forceps, guide)) {
-      std::fprintf(stderr, "  no reading within 5 s: is the handle plugged in, is a wire broken? Again.\n");
+      std::fprintf(io.err, "  no reading within 5 s: is the handle plugged in, is a wire broken? Again.\n");
       continue;
     }
     if (guide.unsteady() > 0.0) {
-      std::fprintf(stderr, "  not steady (%.1f counts): hold it still. Again.\n", guide.unsteady());
+      std::fprintf(io.err, "  not steady (%.1f counts): hold it still. Again.\n", guide.unsteady());
       continue;
     }
-    std::fprintf(stderr, "  %.1f counts, noise %.1f\n", guide.points().back().count, guide.points().back().noise);
+    std::fprintf(io.err, "  %.1f counts, noise %.1f\n", guide.points().back().count, guide.points().back().noise);
   }
   return guide.points();
 }
 
-CalibrationReadings readings_from_port(const CalibrateOptions& o) {
+CalibrationReadings readings_from_port(const CalibrateOptions& o, const Streams& io) {
   SerialForceps forceps(o.port, ForcepsCalibration::load(o.common.root + "/models/forceps/default.yaml"));
   std::vector<double> angles;
   for (double degrees : o.angles) angles.push_back(degrees * kDegree);
   CalibrationReadings readings;
-  readings.angle = guide_through(forceps, {CalibrationGuide::Channel::angle, angles, o.repeats});
-  readings.force = guide_through(forceps, {CalibrationGuide::Channel::force, o.forces, o.repeats});
+  readings.angle = guide_through(forceps, {CalibrationGuide::Channel::angle, angles, o.repeats}, io);
+  readings.force = guide_through(forceps, {CalibrationGuide::Channel::force, o.forces, o.repeats}, io);
   const ClockDrift& drift = forceps.stream().drift();
   if (drift.known()) {
     const auto line = drift.at(steady_now_us());
-    std::fprintf(stderr, "clock of the handle: %.1f +- %.1f ppm against this machine's\n", line.drift_ppm, line.drift_uncertainty_ppm);
+    std::fprintf(io.err, "clock of the handle: %.1f +- %.1f ppm against this machine's\n", line.drift_ppm, line.drift_uncertainty_ppm);
   }
   return readings;
 }
@@ -94,22 +99,22 @@ nlohmann::ordered_json fit_json(const CalibrationFit& f, const std::string& unit
           {"residual", f.residual}, {"hysteresis", f.hysteresis}, {"repeatability", f.repeatability}, {"from", f.from}, {"to", f.to}};
 }
 
-void print_fit(const char* name, const CalibrationFit& f, double scale, const char* unit) {
+void print_fit(const char* name, const CalibrationFit& f, double scale, const char* unit, const Streams& io) {
   if (!f.good) {
-    std::printf("%s: refused: %s\n", name, f.why.c_str());
+    std::fprintf(io.out, "%s: refused: %s\n", name, f.why.c_str());
     return;
   }
-  std::printf("%s: %.4g %s a count, uncertainty %.3g %s (residual %.3g, hysteresis %.3g, repeatability %.3g), valid from %.4g to %.4g %s\n",
+  std::fprintf(io.out, "%s: %.4g %s a count, uncertainty %.3g %s (residual %.3g, hysteresis %.3g, repeatability %.3g), valid from %.4g to %.4g %s\n",
               name, f.gain / scale, unit, f.uncertainty / scale, unit, f.residual / scale, f.hysteresis / scale,
               f.repeatability / scale, f.from / scale, f.to / scale, unit);
 }
 
-int run(const CalibrateOptions& o) {
+int run(const CalibrateOptions& o, const Streams& io) {
   if (o.port.empty() == o.points.empty()) throw InputError("calibrate", "--port", o.port, "either --port or --points");
   if (o.points.empty() && std::min(o.angles.size(), o.forces.size()) < 5)
     throw InputError("calibrate", "--angles, --forces", std::to_string(std::min(o.angles.size(), o.forces.size())) + " values", "at least 5");
   if (std::filesystem::exists(o.out)) throw InputError("calibrate", "--out", o.out, "a file that does not exist yet");
-  const CalibrationReadings readings = o.points.empty() ? readings_from_port(o) : load_readings(o.points);
+  const CalibrationReadings readings = o.points.empty() ? readings_from_port(o, io) : load_readings(o.points);
   const CalibrationFit angle = fit_line(readings.angle, {}, "deg", kDegree);
   const CalibrationFit force = fit_line(readings.force, {}, "N", 1.0);
   const bool good = angle.good && force.good;
@@ -120,11 +125,11 @@ int run(const CalibrateOptions& o) {
     if (!file.flush()) throw InputError("calibrate", "--out", o.out, "a file that can be written");
   }
   if (o.common.json) {
-    print_json({{"good", good}, {"angle", fit_json(angle, "rad")}, {"force", fit_json(force, "N")}, {"file", good ? o.out : ""}});
+    print_json(io.out, {{"good", good}, {"angle", fit_json(angle, "rad")}, {"force", fit_json(force, "N")}, {"file", good ? o.out : ""}});
   } else {
-    print_fit("angle", angle, kDegree, "deg");
-    print_fit("force", force, 1.0, "N");
-    if (good) std::printf("written to %s; use it with --forceps %s\n", o.out.c_str(), o.out.c_str());
+    print_fit("angle", angle, kDegree, "deg", io);
+    print_fit("force", force, 1.0, "N", io);
+    if (good) std::fprintf(io.out, "written to %s; use it with --forceps %s\n", o.out.c_str(), o.out.c_str());
   }
   return good ? kDone : kFailed;
 }
@@ -146,7 +151,7 @@ void add_calibrate(CLI::App& app, Action& action) {
   forceps->add_option("--forces", o->forces, "Loads to put on the pad [N], growing")->delimiter(',');
   forceps->add_option("--repeats", o->repeats, "Times each value is approached from below and from above")->check(CLI::Range(2, 20));
   add_common(*forceps, o->common);
-  forceps->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  forceps->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

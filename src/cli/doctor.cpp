@@ -199,7 +199,7 @@ Check guarded(const char* name, Function check, const char* advice = "Restore th
   }
 }
 
-int run(const DoctorOptions& o) {
+int run(const DoctorOptions& o, const Streams& io) {
   std::vector<Check> checks = {
       check_cores(),
       check_timer(),
@@ -215,11 +215,11 @@ int run(const DoctorOptions& o) {
   if (o.common.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Check& c : checks) list.push_back({{"name", c.name}, {"ok", c.ok}, {"detail", c.detail}, {"advice", c.advice}});
-    print_json({{"ok", ok}, {"checks", list}});
+    print_json(io.out, {{"ok", ok}, {"checks", list}});
   } else {
     for (const Check& c : checks) {
-      std::printf("%-5s %-9s %s\n", c.ok ? "ok" : "NOT", c.name.c_str(), c.detail.c_str());
-      if (!c.advice.empty()) std::printf("                %s\n", c.advice.c_str());
+      std::fprintf(io.out, "%-5s %-9s %s\n", c.ok ? "ok" : "NOT", c.name.c_str(), c.detail.c_str());
+      if (!c.advice.empty()) std::fprintf(io.out, "                %s\n", c.advice.c_str());
     }
   }
   return ok ? kDone : kFailed;
@@ -236,7 +236,7 @@ void add_doctor(CLI::App& app, Action& action) {
   command->add_option("--serial", o->serial, "Serial port of the forceps");
   command->add_option("--forceps", o->forceps, "Calibration of the forceps that is to be used with it");
   add_common(*command, o->common);
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

@@ -17,18 +17,18 @@ struct ExportOptions {
   bool json = false;
 };
 
-int print_files(const std::vector<std::string>& files, bool json) {
+int print_files(const std::vector<std::string>& files, bool json, const Streams& io) {
   if (json) {
-    print_json({{"files", files}});
+    print_json(io.out, {{"files", files}});
   } else {
-    for (const std::string& file : files) std::printf("%s\n", file.c_str());
+    for (const std::string& file : files) std::fprintf(io.out, "%s\n", file.c_str());
   }
   return kDone;
 }
 
-int run(const ExportOptions& o) {
+int run(const ExportOptions& o, const Streams& io) {
   const RecordingReader recording(o.file);
-  if (o.format == "bids") return print_files(export_bids(recording, o.folder), o.json);
+  if (o.format == "bids") return print_files(export_bids(recording, o.folder), o.json, io);
   std::vector<Table> tables = recorded_tables(recording);
   {
     const RecordedSetup recorded(recording);
@@ -37,7 +37,7 @@ int run(const ExportOptions& o) {
   }
   const auto files = o.format == "csv" ? export_csv(tables, recording.meta(), o.folder)
                                        : export_hdf5(tables, recording.meta(), o.folder);
-  return print_files(files, o.json);
+  return print_files(files, o.json, io);
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ void add_export(CLI::App& app, Action& action) {
   command->add_option("--format", o->format, "csv, hdf5 or bids (Motion-BIDS)")->check(CLI::IsMember({"csv", "hdf5", "bids"}))->capture_default_str();
   command->add_option("--out", o->folder, "Folder to write to; made if it is not there")->required();
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

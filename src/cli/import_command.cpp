@@ -19,8 +19,8 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("folder", o->folder, "Folder of the tables")->required();
   command->add_option("--out", o->out, "Folder for the datasets")->required();
   command->callback([o, &action] {
-    action.run = [o] {
-      for (const std::string& name : reconcile::import_data(o->kind, o->folder, o->out)) std::printf("%s/%s\n", o->out.c_str(), name.c_str());
+    action.run = [o](const Streams& io) {
+      for (const std::string& name : reconcile::import_data(o->kind, o->folder, o->out)) std::fprintf(io.out, "%s/%s\n", o->out.c_str(), name.c_str());
       return static_cast<int>(kDone);
     };
   });

@@ -16,7 +16,7 @@ namespace {
 // The physical effects that the world is made of, each one header below src/physics; those of reconcile come from its catalogue.
 constexpr const char* kEffects[] = {"elastic_rod", "rod_contact", "friction", "rod_obstacle", "thread_grasp", "instrument", "linear_fem", "spatula_contact", "needle", "needle_track", "rod_tether"};
 
-int run(const CommonOptions& o) {
+int run(const CommonOptions& o, const Streams& io) {
   using Json = nlohmann::ordered_json;
   std::vector<std::string> problems;
   Json tasks = Json::array();
@@ -32,20 +32,20 @@ int run(const CommonOptions& o) {
   for (const auto& effect : reconcile::effects()) effects.push_back(effect.name);
   for (const char* effect : kEffects) effects.push_back(effect);
   const auto models = model_names(o.root);
-  for (const std::string& problem : problems) std::fprintf(stderr, "filum: %s\n", problem.c_str());
+  for (const std::string& problem : problems) std::fprintf(io.err, "filum: %s\n", problem.c_str());
   if (o.json) {
-    print_json({{"tasks", tasks}, {"models", models}, {"curricula", curricula}, {"rigs", rigs}, {"effects", effects}});
+    print_json(io.out, {{"tasks", tasks}, {"models", models}, {"curricula", curricula}, {"rigs", rigs}, {"effects", effects}});
   } else {
-    std::printf("tasks\n");
+    std::fprintf(io.out, "tasks\n");
     for (const Json& task : tasks) {
-      std::printf("  %-18s %s\n", task["name"].get<std::string>().c_str(), task["title"].get<std::string>().c_str());
+      std::fprintf(io.out, "  %-18s %s\n", task["name"].get<std::string>().c_str(), task["title"].get<std::string>().c_str());
     }
-    std::printf("models\n");
-    for (const std::string& model : models) std::printf("  %s\n", model.c_str());
-    std::printf("effects\n");
-    for (const Json& effect : effects) std::printf("  %s\n", effect.get<std::string>().c_str());
-    std::printf("rigs of reconcile\n");
-    for (const Json& rig : rigs) std::printf("  %s\n", rig.get<std::string>().c_str());
+    std::fprintf(io.out, "models\n");
+    for (const std::string& model : models) std::fprintf(io.out, "  %s\n", model.c_str());
+    std::fprintf(io.out, "effects\n");
+    for (const Json& effect : effects) std::fprintf(io.out, "  %s\n", effect.get<std::string>().c_str());
+    std::fprintf(io.out, "rigs of reconcile\n");
+    for (const Json& rig : rigs) std::fprintf(io.out, "  %s\n", rig.get<std::string>().c_str());
   }
   return problems.empty() ? kDone : kBadInput;
 }
@@ -56,7 +56,7 @@ void add_list(CLI::App& app, Action& action) {
   auto o = std::make_shared<CommonOptions>();
   CLI::App* command = app.add_subcommand("list", "List tasks, models and effects");
   add_common(*command, *o);
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

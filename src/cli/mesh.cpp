@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 
@@ -18,17 +20,17 @@ void add_mesh(CLI::App& app, Action& action) {
   command->set_help_flag();  // the other program's
   command->callback([command, words, &action] {
     *words = command->remaining();
-    action.run = [words] {
+    action.run = [words](const Streams& io) {
       const std::string program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "filum_mesh";
       if (!std::filesystem::exists(program)) {
-        std::fprintf(stderr, "filum: mesh is not built: install libcgal-dev and libnifti-dev, then run ./filum test\n");
+        std::fprintf(io.err, "filum: mesh is not built: install libcgal-dev and libnifti-dev, then run ./filum test\n");
         return static_cast<int>(kFailed);
       }
       std::vector<char*> arguments = {const_cast<char*>(program.c_str())};
       for (std::string& word : *words) arguments.push_back(word.data());
       arguments.push_back(nullptr);
       execv(program.c_str(), arguments.data());
-      std::perror("filum: mesh");
+      std::fprintf(io.err, "filum: mesh: %s\n", std::strerror(errno));
       return static_cast<int>(kFailed);
     };
   });

@@ -16,11 +16,13 @@ void add_common(CLI::App& command, CommonOptions& options) {
   command.add_flag("--json", options.json, "Print one JSON document and nothing else");
 }
 
-void print_json(const nlohmann::ordered_json& document) {
-  const std::string text = document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  std::fputc('\n', stdout);
-  std::fflush(stdout);
+std::string json_text(const nlohmann::ordered_json& document) { return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); }
+
+void print_json(std::FILE* out, const nlohmann::ordered_json& document) {
+  const std::string text = json_text(document);
+  std::fwrite(text.data(), 1, text.size(), out);
+  std::fputc('\n', out);
+  std::fflush(out);
 }
 
 const char* version() { return FILUM_VERSION; }

@@ -2,6 +2,7 @@
 // What all subcommands share: where the data is, how results are printed, exit codes. Each subcommand is one file that adds
 // itself to the command line; its callback returns the exit code.
 
+#include <cstdio>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -19,9 +20,16 @@ struct CommonOptions {
   bool json = false;  // one JSON document on stdout, nothing else
 };
 
-/// Set by the subcommand that was asked for; run by main().
+/// Where a command reads and writes: those of the process, or those that a test looks into.
+struct Streams {
+  std::FILE* in = stdin;
+  std::FILE* out = stdout;
+  std::FILE* err = stderr;
+};
+
+/// Set by the subcommand that was asked for; run by program().
 struct Action {
-  std::function<int()> run;
+  std::function<int(const Streams&)> run;
 };
 
 void add_train(CLI::App& app, Action& action);
@@ -43,8 +51,9 @@ void add_mesh(CLI::App& app, Action& action);
 void add_common(CLI::App& command, CommonOptions& options);
 void add_root(CLI::App& command, CommonOptions& options);
 
-/// One line on stdout.
-void print_json(const nlohmann::ordered_json& document);
+/// One line; bytes that are no text do not break it.
+std::string json_text(const nlohmann::ordered_json& document);
+void print_json(std::FILE* out, const nlohmann::ordered_json& document);
 
 const char* version();
 /// Program, version and build, as stored in recordings: equal replay is promised within one build.

@@ -4,6 +4,7 @@
 
 #include "analysis/agreement.h"
 #include "base/error.h"
+#include "cli/options.h"
 
 namespace filum {
 namespace {
@@ -11,8 +12,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kRatings = "/api/ratings/", kDocuments = "/documents/agreement/";
-
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 Json marks_json(const Rating& rating) {
   Json marks = Json::object();
@@ -89,14 +88,14 @@ std::optional<std::string> RatingDesk::get(std::string_view path) {
     const std::vector<Rating> all = ratings_ ? ratings_->list() : std::vector<Rating>();
     Json json = agreement_json(agreements(all), all);
     json["trouble"] = trouble_;
-    return text_of(json);
+    return json_text(json);
   }
   if (!path.starts_with(kRatings)) return std::nullopt;
   const std::string session(path.substr(kRatings.size()));
   const auto text = result_of_(session);
   if (!text) return std::nullopt;
   const Json result = Json::parse(*text, nullptr, false);
-  return text_of(status(session, result.is_object() ? result : Json::object()));
+  return json_text(status(session, result.is_object() ? result : Json::object()));
 }
 
 std::optional<std::string> RatingDesk::post(std::string_view path, const std::string& body) {
@@ -107,11 +106,11 @@ std::optional<std::string> RatingDesk::post(std::string_view path, const std::st
   try {
     const Json result = Json::parse(*text);
     put(session, result, body);
-    return text_of(status(session, result));
+    return json_text(status(session, result));
   } catch (const InputError& error) {
-    return text_of({{"refused", error.field + ": found " + error.value + ", expected " + error.expected}});
+    return json_text({{"refused", error.field + ": found " + error.value + ", expected " + error.expected}});
   } catch (const std::exception& error) {
-    return text_of({{"refused", error.what()}});
+    return json_text({{"refused", error.what()}});
   }
 }
 
@@ -121,7 +120,7 @@ std::optional<Document> RatingDesk::document(std::string_view path) {
   const std::vector<Rating> all = ratings_->list();
   if (path == "agreement.csv") return Document{"text/csv; charset=utf-8", agreement_csv(agreements(all))};
   if (path == "ratings.csv") return Document{"text/csv; charset=utf-8", ratings_csv(all)};
-  if (path == "agreement.json") return Document{"application/json", text_of(agreement_json(agreements(all), all))};
+  if (path == "agreement.json") return Document{"application/json", json_text(agreement_json(agreements(all), all))};
   return std::nullopt;
 }
 

@@ -32,39 +32,39 @@ struct ReconcileOptions : CommonOptions {
   bool again = false, repeatable = false;
 };
 
-void show_progress(const std::string& stage, double share) {
-  if (isatty(STDERR_FILENO) == 0) return;
+void show_progress(const std::string& stage, double share, const Streams& io) {
+  if (isatty(fileno(io.err)) == 0) return;
   const int filled = static_cast<int>(30 * share);
-  std::fprintf(stderr, "\r[%-30s] %-14s", std::string(static_cast<std::size_t>(filled), '#').c_str(), stage.c_str());
-  if (share >= 1.0) std::fputc('\n', stderr);
+  std::fprintf(io.err, "\r[%-30s] %-14s", std::string(static_cast<std::size_t>(filled), '#').c_str(), stage.c_str());
+  if (share >= 1.0) std::fputc('\n', io.err);
 }
 
-reconcile::Result solve(const std::string& folder, const std::string& out, const ReconcileOptions& o, int threads, bool progress, std::string& name) {
+reconcile::Result solve(const std::string& folder, const std::string& out, const ReconcileOptions& o, int threads, bool progress, std::string& name, const Streams& io) {
   const reconcile::Dataset d = reconcile::load_dataset(folder, o.root);
   reconcile::Options options;
   options.threads = threads;
-  if (progress) options.progress = show_progress;
+  if (progress) options.progress = [&io](const std::string& stage, double share) { show_progress(stage, share, io); };
   reconcile::Result r = reconcile::reconcile(d, options);
   if (o.repeatable) r.seconds = std::numeric_limits<double>::quiet_NaN();
-  if (progress) show_progress("done", 1.0);
+  if (progress) show_progress("done", 1.0, io);
   reconcile::write_report(d, r, out, program_text());
   name = d.name;
   if (progress)
-    for (const std::string& notice : d.notices) std::fprintf(stderr, "%s\n", notice.c_str());
+    for (const std::string& notice : d.notices) std::fprintf(io.err, "%s\n", notice.c_str());
   if (progress)
-    for (const reconcile::HardwareCheck& h : reconcile::check_units(d, r.baseline)) std::fprintf(stderr, "%s: %s\n", h.where.c_str(), h.found.c_str());
-  if (progress && o.json) print_json(reconcile::report_json(d, r));
+    for (const reconcile::HardwareCheck& h : reconcile::check_units(d, r.baseline)) std::fprintf(io.err, "%s: %s\n", h.where.c_str(), h.found.c_str());
+  if (progress && o.json) print_json(io.out, reconcile::report_json(d, r));
   return r;
 }
 
-int run_one(const ReconcileOptions& o) {
+int run_one(const ReconcileOptions& o, const Streams& io) {
   std::string name;
-  const reconcile::Result r = solve(o.dataset, o.out, o, o.threads > 0 ? o.threads : 2, true, name);
+  const reconcile::Result r = solve(o.dataset, o.out, o, o.threads > 0 ? o.threads : 2, true, name, io);
   if (o.json) return kDone;
-  std::printf("%s: %s%s", name.c_str(), r.verdict.c_str(), r.partial ? " (partial)" : "");
+  std::fprintf(io.out, "%s: %s%s", name.c_str(), r.verdict.c_str(), r.partial ? " (partial)" : "");
   if (r.verdict == "effect")
-    for (const auto& e : r.effects) std::printf(" %s", reconcile::info(e.effect).name.c_str());
-  std::printf("\n%s\ngap: fit %.3g -> %.3g, held out %.3g -> %.3g (noise = 1)\n%s/report.html, %.1f s\n", r.sentence.c_str(), r.fit.before, r.fit.after, r.held_out.before, r.held_out.after,
+    for (const auto& e : r.effects) std::fprintf(io.out, " %s", reconcile::info(e.effect).name.c_str());
+  std::fprintf(io.out, "\n%s\ngap: fit %.3g -> %.3g, held out %.3g -> %.3g (noise = 1)\n%s/report.html, %.1f s\n", r.sentence.c_str(), r.fit.before, r.fit.after, r.held_out.before, r.held_out.after,
               o.out.c_str(), r.seconds);
   return kDone;
 }
@@ -79,11 +79,11 @@ std::pair<std::size_t, std::size_t> rank_and_size() {
 }
 
 /// MPI where mpirun started several processes and the module is there; else nothing, and the environment's numbers must do.
-std::unique_ptr<Ranks> start_ranks() {
+std::unique_ptr<Ranks> start_ranks(const Streams& io) {
   if (rank_and_size().second == 1) return nullptr;
   std::string why;
   const auto start = reinterpret_cast<StartRanks>(reconcile::module_function("filum_ranks", kStartRanks, &why));
-  if (start == nullptr && !why.empty()) std::fprintf(stderr, "without MPI: %s\n", why.c_str());
+  if (start == nullptr && !why.empty()) std::fprintf(io.err, "without MPI: %s\n", why.c_str());
   return std::unique_ptr<Ranks>(start == nullptr ? nullptr : start());
 }
 
@@ -108,9 +108,9 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 /// Every dataset below a folder, each on one thread; those that have a report already are left alone. Under MPI the processes take them
 /// from one list as they get free; with the environment's numbers alone every process takes each n-th of all.
-int run_all(const ReconcileOptions& o) {
+int run_all(const ReconcileOptions& o, const Streams& io) {
   if (!fs::is_directory(o.all)) throw InputError("--all", "folder", o.all, "a folder of datasets");
-  const std::unique_ptr<Ranks> ranks = start_ranks();
+  const std::unique_ptr<Ranks> ranks = start_ranks(io);
   const auto [rank, size] = rank_and_size();
   ReconcileOptions every = o;
   every.again = true;
@@ -128,7 +128,7 @@ int run_all(const ReconcileOptions& o) {
       if (by_number && !o.again && fs::exists(fs::path(o.out) / folder / "report.json")) continue;
       std::string name, line;
       try {
-        const auto r = solve((fs::path(o.all) / folder).string(), (fs::path(o.out) / folder).string(), o, 1, false, name);
+        const auto r = solve((fs::path(o.all) / folder).string(), (fs::path(o.out) / folder).string(), o, 1, false, name, io);
         line = name + ": " + r.verdict;
         for (const auto& e : r.effects) line += " " + reconcile::info(e.effect).name;
       } catch (const std::exception& error) {
@@ -136,7 +136,7 @@ int run_all(const ReconcileOptions& o) {
         line = folder + ": refused: " + error.what();
       }
       const std::lock_guard lock(guard);
-      std::fprintf(stderr, "%ld/%zu %s\n", ++done, names.size(), line.c_str());
+      std::fprintf(io.err, "%ld/%zu %s\n", ++done, names.size(), line.c_str());
     }
   });
   const long refused = ranks != nullptr ? ranks->sum(bad) : bad.load();
@@ -156,9 +156,9 @@ void add_reconcile(CLI::App& app, Action& action) {
   command->add_flag("--again", o->again, "With --all: also those that have a report");
   command->add_flag("--repeatable", o->repeatable, "Leave the time it took out of the report, so that equal data give equal files");
   command->callback([o, &action] {
-    action.run = [o] {
+    action.run = [o](const Streams& io) {
       if (o->dataset.empty() == o->all.empty()) throw InputError("reconcile", "DATASET", o->dataset.empty() ? "nothing" : "a folder and --all", "one folder, or --all FOLDER");
-      return o->all.empty() ? run_one(*o) : run_all(*o);
+      return o->all.empty() ? run_one(*o, io) : run_all(*o, io);
     };
   });
 }

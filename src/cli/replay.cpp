@@ -17,13 +17,13 @@ struct ReplayOptions {
   bool json = false;
 };
 
-int run(const ReplayOptions& o) {
+int run(const ReplayOptions& o, const Streams& io) {
   const RecordingReader recording(o.file);
   const RecordedSetup recorded(recording);
   World world(recorded.setup().model);
   const ReplayResult result = replay(recording, world);
   if (recording.meta().program != program_text()) {
-    std::fprintf(stderr, "filum: recorded by %s, replayed by %s: equal states are promised within one build only\n",
+    std::fprintf(io.err, "filum: recorded by %s, replayed by %s: equal states are promised within one build only\n",
                  recording.meta().program.c_str(), program_text().c_str());
   }
   if (o.json) {
@@ -33,14 +33,14 @@ int run(const ReplayOptions& o) {
     }
     document["recorded_by"] = recording.meta().program;
     document["finished"] = recording.finished();
-    print_json(document);
+    print_json(io.out, document);
   } else if (result.identical) {
-    std::printf("identical: %" PRIu64 " steps\n", result.steps);
+    std::fprintf(io.out, "identical: %" PRIu64 " steps\n", result.steps);
   } else if (result.first_difference) {
-    std::printf("first difference at step %" PRIu64 " in array %s\n", result.first_difference->step,
+    std::fprintf(io.out, "first difference at step %" PRIu64 " in array %s\n", result.first_difference->step,
                 result.first_difference->array.c_str());
   } else {
-    std::printf("the recording holds no step\n");
+    std::fprintf(io.out, "the recording holds no step\n");
   }
   return result.identical ? kDone : kFailed;
 }
@@ -52,7 +52,7 @@ void add_replay(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("replay", "Step a recording anew and compare every state");
   command->add_option("file", o->file, "Recording")->required();
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

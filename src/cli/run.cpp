@@ -30,23 +30,23 @@ std::string hash_text_of(std::uint64_t hash) {
   return text;
 }
 
-void print_text(const LiveOutcome& outcome) {
+void print_text(const LiveOutcome& outcome, const Streams& io) {
   const Result& r = outcome.result;
-  std::printf("%s: %s, %s\n", r.title.c_str(), r.finished ? "finished" : "not finished", r.passed ? "passed" : "not passed");
+  std::fprintf(io.out, "%s: %s, %s\n", r.title.c_str(), r.finished ? "finished" : "not finished", r.passed ? "passed" : "not passed");
   if (r.pressure) {
-    std::printf("pressure: peak %.1f mmHg, dose %.1f mmHg min (%s)\n", r.pressure->peak / kMmHg, r.pressure->dose / (60.0 * kMmHg), r.pressure->limits.label.c_str());
+    std::fprintf(io.out, "pressure: peak %.1f mmHg, dose %.1f mmHg min (%s)\n", r.pressure->peak / kMmHg, r.pressure->dose / (60.0 * kMmHg), r.pressure->limits.label.c_str());
   }
-  if (r.has_knot) std::printf("knot: %s\n", r.knot.knot_class.c_str());
-  std::printf("score %.1f of %.1f\n", r.total, r.max_total);
+  if (r.has_knot) std::fprintf(io.out, "knot: %s\n", r.knot.knot_class.c_str());
+  std::fprintf(io.out, "score %.1f of %.1f\n", r.total, r.max_total);
   for (const ScoreItem& item : r.items) {
-    std::printf("  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());
+    std::fprintf(io.out, "  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());
   }
-  for (const std::string& line : r.verdict) std::printf("%s\n", line.c_str());
-  std::printf("%.1f s of scene in %.1f s (real-time factor %.2f), %" PRIu64 " late steps, state %s\n", outcome.scene_seconds,
+  for (const std::string& line : r.verdict) std::fprintf(io.out, "%s\n", line.c_str());
+  std::fprintf(io.out, "%.1f s of scene in %.1f s (real-time factor %.2f), %" PRIu64 " late steps, state %s\n", outcome.scene_seconds,
               outcome.wall_seconds, outcome.real_time_factor, outcome.overruns, hash_text_of(outcome.state_hash).c_str());
 }
 
-int run(const RunOptions& o) {
+int run(const RunOptions& o, const Streams& io) {
   Setup setup = load_setup(o.common.root, o.task, o.model, o.stiffness);
   InputDevices inputs = open_inputs(o.input, o.common.root, o.task, o.motion_scale, o.forceps);
   std::unique_ptr<Recorder> recorder;
@@ -70,12 +70,12 @@ int run(const RunOptions& o) {
     document["steps"] = outcome.steps;
     document["scene_seconds"] = outcome.scene_seconds;
     document["state_hash"] = hash_text_of(outcome.state_hash);
-    print_json(document);
+    print_json(io.out, document);
   } else {
-    print_text(outcome);
+    print_text(outcome, io);
   }
   if (recorder && !recorder->status().healthy) {
-    std::fprintf(stderr, "filum: recording %s: %s\n", o.record.c_str(), recorder->status().message.c_str());
+    std::fprintf(io.err, "filum: recording %s: %s\n", o.record.c_str(), recorder->status().message.c_str());
     return kFailed;
   }
   return kDone;
@@ -98,7 +98,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_flag("--real-time", o->real_time, "Keep to the clock instead of running as fast as possible");
   command->add_option("--longest", o->longest, "End after this much scene time [s]")->check(CLI::Range(0.1, 36000.0))->capture_default_str();
   add_common(*command, o->common);
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

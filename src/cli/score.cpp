@@ -16,25 +16,25 @@ struct ScoreOptions {
   bool json = false;
 };
 
-int run(const ScoreOptions& o) {
+int run(const ScoreOptions& o, const Streams& io) {
   const RecordingReader recording(o.file);
   const Rescored rescored = rescore(recording);
   const Result& r = rescored.result;
   if (o.json) {
     nlohmann::ordered_json document = result_document(r);
     document["replay_identical"] = rescored.replay.identical;
-    print_json(document);
+    print_json(io.out, document);
     return kDone;
   }
   if (!rescored.replay.identical) {
-    std::fprintf(stderr, "filum: this build steps the recording differently; the score is of what it computes\n");
+    std::fprintf(io.err, "filum: this build steps the recording differently; the score is of what it computes\n");
   }
   const std::string knot = r.has_knot ? ", knot " + r.knot.knot_class : "";
-  std::printf("%s: %s%s, %.1f of %.1f points\n", r.title.c_str(), r.passed ? "passed" : "not passed", knot.c_str(), r.total, r.max_total);
+  std::fprintf(io.out, "%s: %s%s, %.1f of %.1f points\n", r.title.c_str(), r.passed ? "passed" : "not passed", knot.c_str(), r.total, r.max_total);
   for (const ScoreItem& item : r.items) {
-    std::printf("  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());
+    std::fprintf(io.out, "  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());
   }
-  for (const std::string& line : r.verdict) std::printf("%s\n", line.c_str());
+  for (const std::string& line : r.verdict) std::fprintf(io.out, "%s\n", line.c_str());
   return kDone;
 }
 
@@ -45,7 +45,7 @@ void add_score(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("score", "Score a recording anew");
   command->add_option("file", o->file, "Recording")->required();
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

@@ -57,7 +57,7 @@ std::string message_of(Json result, const std::string& session) {
   }
   for (const char* key : {"pressure_map", "stitches", "spacings_m", "lapses", "lapse_rules", "scale", "leak", "clamps", "milking", "thrombosis_factors"})
     if (result.contains(key)) message[key] = std::move(result[key]);
-  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(message);
 }
 
 }  // namespace

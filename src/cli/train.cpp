@@ -22,7 +22,8 @@ struct TrainOptions {
   TrainerOptions trainer;
 };
 
-int run(const TrainOptions& o) {
+int run(const TrainOptions& o, const Streams& io) {
+  quit.store(false);
   TrainerOptions options = o.trainer;
   options.root = o.common.root;
   if (options.store_folder.empty()) options.store_folder = default_store_folder();
@@ -30,9 +31,9 @@ int run(const TrainOptions& o) {
   std::signal(SIGTERM, on_signal);
   std::signal(SIGPIPE, SIG_IGN);
   Trainer trainer(std::move(options));
-  if (!trainer.store_warning().empty()) std::fprintf(stderr, "filum: %s\n", trainer.store_warning().c_str());
-  std::printf("Filum trainer: %s\n", trainer.url().c_str());
-  std::fflush(stdout);
+  if (!trainer.store_warning().empty()) std::fprintf(io.err, "filum: %s\n", trainer.store_warning().c_str());
+  std::fprintf(io.out, "Filum trainer: %s\n", trainer.url().c_str());
+  std::fflush(io.out);
   trainer.run(quit);
   return kDone;
 }
@@ -56,7 +57,7 @@ void add_train(CLI::App& app, Action& action) {
   o->trainer.viewer_folder = std::string(source_folder()) + "/src/viewer/dist";
   command->add_option("--viewer", o->trainer.viewer_folder, "Folder of the built viewer")->capture_default_str();
   add_root(*command, o->common);
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

@@ -59,6 +59,7 @@ class Trainer final : public ServerHost {
   void controlled(bool by_somebody) override;
   std::optional<std::string> api(std::string_view path) override;
   std::optional<std::string> post(std::string_view path, const std::string& body) override;
+  std::optional<std::string> put(std::string_view path, const std::string& body) override { return lab_.put(path, body); }
   std::optional<Document> document(std::string_view path) override;
 
  private:

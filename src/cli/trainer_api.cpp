@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "cli/options.h"
 #include "cli/session_files.h"
 #include "cli/trainer.h"
 
@@ -24,8 +25,6 @@ Json info_json(const StoreEntry& e, const std::string& title, const std::string&
           {"passed", e.scored ? Json(e.passed) : Json(nullptr)},
           {"total", e.scored ? Json(e.total) : Json(nullptr)}};
 }
-
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 }  // namespace
 
@@ -83,7 +82,7 @@ std::optional<std::string> Trainer::api(std::string_view path) {
     if (store_) {
       for (const StoreEntry& entry : store_->list()) list.push_back(info_json(entry, title_of(entry.task), input_of(entry.id)));
     }
-    return text_of({{"sessions", list}});
+    return json_text({{"sessions", list}});
   }
   path.remove_prefix(1);
   const bool series = path.ends_with("/series");
@@ -98,9 +97,9 @@ std::optional<std::string> Trainer::api(std::string_view path) {
   } catch (const InputError&) {
     // A session that is running or damaged has no result to show; the store's check names the damage.
   }
-  if (!series) return text_of({{"session", info_json(*entry, title_of(entry->task), input_of(entry->id))}, {"result", result}});
-  if (result.is_null()) return text_of({{"series", Json::array()}, {"paths", Json::array()}});
-  return text_of({{"series", result["series"]}, {"paths", result["paths"]}});
+  if (!series) return json_text({{"session", info_json(*entry, title_of(entry->task), input_of(entry->id))}, {"result", result}});
+  if (result.is_null()) return json_text({{"series", Json::array()}, {"paths", Json::array()}});
+  return json_text({{"series", result["series"]}, {"paths", result["paths"]}});
 }
 
 }  // namespace filum

@@ -13,8 +13,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr std::size_t kKept = 8;  // analyses
 
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 /// Takes a prefix off; false if it is not there.
 bool take(std::string_view& path, std::string_view prefix) {
   if (!path.starts_with(prefix)) return false;
@@ -40,6 +38,20 @@ std::vector<std::string> names(const std::string& body, const char* name) {
   return list;
 }
 
+/// What was asked for, or why it is refused; nothing where there is no such thing (null).
+template <class Ask>
+std::optional<std::string> answer(const Ask& ask) {
+  try {
+    const Json said = ask();
+    if (said.is_null()) return std::nullopt;
+    return json_text(said);
+  } catch (const InputError& error) {
+    return json_text({{"refused", error.field + ": found " + error.value + ", expected " + error.expected}});
+  } catch (const std::exception& error) {
+    return json_text({{"refused", error.what()}});
+  }
+}
+
 std::string page_of(const std::string& file, const std::string& clamped) {
   AnalysisInput input;
   input.sessions.push_back(open_session(file));
@@ -50,7 +62,7 @@ std::string page_of(const std::string& file, const std::string& clamped) {
 }  // namespace
 
 TrainerLab::TrainerLab(LabOptions options, std::function<std::optional<std::string>(const std::string&)> recording_of)
-    : options_(std::move(options)), recording_of_(std::move(recording_of)), reconcile_(options_.datasets, options_.folder + "/reports", options_.root), study_(open_session), chosen_(options_.calibration) {}
+    : options_(std::move(options)), recording_of_(std::move(recording_of)), upload_(options_.datasets), reconcile_(options_.datasets, options_.folder + "/reports", options_.root), study_(open_session), chosen_(options_.calibration) {}
 
 TrainerLab::~TrainerLab() {
   if (analyst_.joinable()) analyst_.join();
@@ -72,25 +84,28 @@ Json TrainerLab::calibration_status() const {
 }
 
 std::optional<std::string> TrainerLab::get(std::string_view path) {
-  if (path == "/api/reconcile") return text_of(reconcile_.status());
-  if (path == "/api/calibration") return text_of(calibration_status());
-  if (path == "/api/study") return text_of(study_.status());
-  if (path == "/api/camera") return text_of(camera_status());
+  if (path == "/api/reconcile") return json_text(reconcile_.status());
+  if (path == "/api/calibration") return json_text(calibration_status());
+  if (path == "/api/study") return json_text(study_.status());
+  if (path == "/api/camera") return json_text(camera_status());
   if (!take(path, "/api/analysis/")) return std::nullopt;
   const std::size_t slash = path.find('/');
   return analysis(std::string(path.substr(0, slash)), slash == path.npos ? "" : std::string(path.substr(slash + 1)));
 }
 
 std::optional<std::string> TrainerLab::post(std::string_view path, const std::string& body) {
-  try {
-    const Json answer = change(path, body);
-    if (answer.is_null()) return std::nullopt;
-    return text_of(answer);
-  } catch (const InputError& error) {
-    return text_of({{"refused", error.field + ": found " + error.value + ", expected " + error.expected}});
-  } catch (const std::exception& error) {
-    return text_of({{"refused", error.what()}});
-  }
+  return answer([&] { return change(path, body); });
+}
+
+std::optional<std::string> TrainerLab::put(std::string_view path, const std::string& body) {
+  return answer([&] { return take(path, "/api/upload/") ? upload_.part(path, body) : Json(nullptr); });
+}
+
+Json TrainerLab::change_upload(std::string_view what, const std::string& body) {
+  if (what == "begin") return upload_.begin(body);
+  if (what == "finish") return upload_.finish(body);
+  if (what == "cancel") return upload_.cancel(body);
+  return nullptr;
 }
 
 Json TrainerLab::camera_status() const {
@@ -141,6 +156,7 @@ Json TrainerLab::change_study(std::string_view what, const std::string& body) {
 Json TrainerLab::change(std::string_view path, const std::string& body) {
   if (take(path, "/api/camera/")) return change_camera(path, body);
   if (take(path, "/api/study/")) return change_study(path, body);
+  if (take(path, "/api/upload/")) return change_upload(path, body);
   if (path == "/api/reconcile/start") reconcile_.start(field(body, "dataset"));
   else if (path == "/api/reconcile/cancel") reconcile_.cancel();
   else if (!path.starts_with("/api/calibration/")) return nullptr;
@@ -198,7 +214,7 @@ std::optional<std::string> TrainerLab::analysis(const std::string& session, cons
   const std::string key = clamped.empty() ? session : session + "/" + clamped;
   const std::lock_guard lock(guard_);
   if (const auto at = analyses_.find(key); at != analyses_.end())
-    return text_of({{"state", at->second.state}, {"document", at->second.state == "ready" ? "/documents/analysis/" + key : ""}, {"message", at->second.state == "failed" ? at->second.text : ""}});
+    return json_text({{"state", at->second.state}, {"document", at->second.state == "ready" ? "/documents/analysis/" + key : ""}, {"message", at->second.state == "failed" ? at->second.text : ""}});
   if (!analysing_) {
     analysing_ = true;
     if (analyst_.joinable()) analyst_.join();
@@ -206,7 +222,7 @@ std::optional<std::string> TrainerLab::analysis(const std::string& session, cons
     analyses_[key] = {};
     analyst_ = std::thread([this, key, file = *file, floor = *floor] { analyse_in_background(key, file, floor); });
   }
-  return text_of({{"state", "working"}, {"document", ""}, {"message", ""}});
+  return json_text({{"state", "working"}, {"document", ""}, {"message", ""}});
 }
 
 void TrainerLab::analyse_in_background(const std::string& key, const std::string& file, const std::string& clamped) {

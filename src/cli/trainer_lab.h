@@ -16,6 +16,7 @@
 
 #include "cli/calibration_session.h"
 #include "cli/camera_session.h"
+#include "cli/dataset_upload.h"
 #include "cli/reconcile_job.h"
 #include "cli/study_job.h"
 #include "server/server.h"
@@ -40,6 +41,7 @@ class TrainerLab {
 
   std::optional<std::string> get(std::string_view path);
   std::optional<std::string> post(std::string_view path, const std::string& body);
+  std::optional<std::string> put(std::string_view path, const std::string& body);
   std::optional<Document> document(std::string_view path);
 
   /// Calibration that forceps sessions are to use.
@@ -57,11 +59,13 @@ class TrainerLab {
   nlohmann::ordered_json change_camera(std::string_view what, const std::string& body);
   nlohmann::ordered_json change_study(std::string_view what, const std::string& body);
   nlohmann::ordered_json change(std::string_view path, const std::string& body);
+  nlohmann::ordered_json change_upload(std::string_view what, const std::string& body);
   std::optional<std::string> analysis(const std::string& session, const std::string& clamped);
   void analyse_in_background(const std::string& key, const std::string& file, const std::string& clamped);
 
   const LabOptions options_;
   const std::function<std::optional<std::string>(const std::string&)> recording_of_;
+  DatasetUpload upload_;  // of the server's thread
   ReconcileJob reconcile_;
   StudyJob study_;
   mutable std::mutex guard_;

@@ -26,28 +26,28 @@ nlohmann::ordered_json json_of(const ValidationProblem& p) {
       {"passed", p.passed}, {"seconds", p.seconds}};
 }
 
-void print_line(const ValidationProblem& p) {
+void print_line(const ValidationProblem& p, const Streams& io) {
   char order[16] = "";
   if (p.order) std::snprintf(order, sizeof order, "%.2f", *p.order);
-  std::printf("%-4s %-28s %12.6g %12.6g %-6s %9.2e %9.2e %5s %7.2f\n", p.passed ? "ok" : "FAIL",
+  std::fprintf(io.out, "%-4s %-28s %12.6g %12.6g %-6s %9.2e %9.2e %5s %7.2f\n", p.passed ? "ok" : "FAIL",
               p.name.c_str(), p.expected, p.got, p.unit.c_str(), p.error, p.tolerance, order, p.seconds);
-  std::fflush(stdout);
+  std::fflush(io.out);
 }
 
-int run(const ValidateOptions& o) {
+int run(const ValidateOptions& o, const Streams& io) {
   if (!o.json) {
-    std::printf("%-4s %-28s %12s %12s %-6s %9s %9s %5s %7s\n", "", "problem", "expected", "got", "unit",
+    std::fprintf(io.out, "%-4s %-28s %12s %12s %-6s %9s %9s %5s %7s\n", "", "problem", "expected", "got", "unit",
                 "error", "tolerance", "order", "seconds");
   }
-  const auto problems = run_validation(o.names, o.json ? ValidationProgress() : print_line);
+  const auto problems = run_validation(o.names, o.json ? ValidationProgress() : [&io](const ValidationProblem& p) { print_line(p, io); });
   const auto failed =
       std::count_if(problems.begin(), problems.end(), [](const ValidationProblem& p) { return !p.passed; });
   if (o.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const ValidationProblem& p : problems) list.push_back(json_of(p));
-    print_json({{"problems", list}});
+    print_json(io.out, {{"problems", list}});
   } else {
-    std::printf("%zu problems, %td failed\n", problems.size(), failed);
+    std::fprintf(io.out, "%zu problems, %td failed\n", problems.size(), failed);
   }
   return failed == 0 ? kDone : kFailed;
 }
@@ -61,7 +61,7 @@ void add_validate(CLI::App& app, Action& action) {
   command->add_option("name", o->names,
                       "Problems to solve, by name or beginning of the name up to a hyphen (default: all)");
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
-  command->callback([o, &action] { action.run = [o] { return run(*o); }; });
+  command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }
 
 }  // namespace filum

@@ -1,15 +1,11 @@
 #include "server/server.h"
 
-#include <utility>  // before Asio: its awaitable.hpp uses std::exchange without including it
-
-#include <boost/asio.hpp>
-#include <boost/beast.hpp>
-#include <deque>
-#include <functional>
 #include <map>
 #include <thread>
 
 #include "base/error.h"
+#include "server/browser.h"
+#include "server/connection.h"
 #include "server/control.h"
 #include "server/static_files.h"
 
@@ -22,181 +18,18 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using beast::error_code;
-using Text = std::shared_ptr<const std::string>;
+using Request = Connection::Request;
+using Response = Connection::Response;
 
 constexpr std::size_t kMaxBrowsers = 16;
 constexpr std::size_t kMaxConnections = 128;
-constexpr std::size_t kMaxHeader = 16 * 1024;       // [byte]
-constexpr std::size_t kMaxBody = 64 * 1024;         // [byte]
-constexpr std::size_t kMaxWaiting = 8 * 1024 * 1024;  // [byte] a browser may be behind before it is let go
-constexpr int kMaxBadMessages = 100;                // in a row
-constexpr std::chrono::seconds kHttpTimeout{30};
+constexpr int kMaxBadMessages = 100;  // in a row
 constexpr const char* kPolicy =
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; "
     "connect-src 'self' ws:; frame-ancestors 'none'";
 
 // Reports stand alone: no scripts, no network; the viewer may frame them.
 constexpr const char* kDocumentPolicy = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; frame-ancestors 'self'";
-
-Text shared(std::string text) { return std::make_shared<const std::string>(std::move(text)); }
-
-// One browser's WebSocket. At most one read and one write are under way; messages wait in order, of frames only the newest.
-class Browser : public std::enable_shared_from_this<Browser> {
- public:
-  using OnText = std::function<void(Browser&, std::string_view)>;
-  using OnEnd = std::function<void(Browser&)>;
-
-  Browser(tcp::socket socket, int id) : id(id), socket_(std::move(socket)) {}
-
-  void open(http::request<http::string_body> request, std::function<void(Browser&)> on_open, OnText on_text, OnEnd on_end) {
-    on_text_ = std::move(on_text);
-    on_end_ = std::move(on_end);
-    socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
-    socket_.read_message_max(kMaxClientMessage);
-    auto keep = std::make_shared<http::request<http::string_body>>(std::move(request));
-    socket_.async_accept(*keep, [self = shared_from_this(), keep, on_open = std::move(on_open)](error_code error) {
-      if (error) return self->end();
-      on_open(*self);
-      self->read();
-    });
-  }
-
-  void send(Text message) {
-    waiting_bytes_ += message->size();
-    waiting_.push_back(std::move(message));
-    if (waiting_bytes_ > kMaxWaiting) return close();
-    write();
-  }
-  void offer_frame(Text body) {
-    frame_ = std::move(body);
-    write();
-  }
-  void forget_frame() { frame_.reset(); }
-  void ack(std::uint64_t frame) {
-    credit_.ack(frame);
-    write();
-  }
-  void close() {
-    error_code ignored;
-    beast::get_lowest_layer(socket_).socket().close(ignored);
-  }
-
-  const int id;
-  int bad_in_a_row = 0;
-
- private:
-  void read() {
-    socket_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
-      if (error) return self->end();
-      const auto data = self->buffer_.cdata();
-      self->on_text_(*self, std::string_view(static_cast<const char*>(data.data()), data.size()));
-      self->buffer_.consume(self->buffer_.size());
-      self->read();
-    });
-  }
-
-  void write() {
-    if (writing_ || ended_) return;
-    if (!waiting_.empty()) {
-      current_ = std::move(waiting_.front());
-      waiting_.pop_front();
-      waiting_bytes_ -= current_->size();
-    } else if (frame_ && credit_.available()) {
-      current_ = shared(frame_message(credit_.take(), *frame_));
-      frame_.reset();
-    } else {
-      return;
-    }
-    writing_ = true;
-    socket_.text(true);
-    socket_.async_write(asio::buffer(*current_), [self = shared_from_this()](error_code error, std::size_t) {
-      self->writing_ = false;
-      if (error) return self->end();
-      self->write();
-    });
-  }
-
-  void end() {
-    if (std::exchange(ended_, true)) return;
-    on_end_(*this);
-  }
-
-  websocket::stream<beast::tcp_stream> socket_;
-  beast::flat_buffer buffer_;
-  std::deque<Text> waiting_;
-  std::size_t waiting_bytes_ = 0;
-  Text current_, frame_;
-  FrameCredit credit_;
-  bool writing_ = false;
-  bool ended_ = false;
-  OnText on_text_;
-  OnEnd on_end_;
-};
-
-// One HTTP connection: answers requests until it is closed or becomes a WebSocket.
-class Connection : public std::enable_shared_from_this<Connection> {
- public:
-  using Request = http::request<http::string_body>;
-  using Answer = std::function<http::response<http::string_body>(const Request&)>;
-  using Upgrade = std::function<void(tcp::socket, Request)>;
-
-  Connection(tcp::socket socket, Answer answer, Upgrade upgrade, std::shared_ptr<void> slot)
-      : stream_(std::move(socket)), answer_(std::move(answer)), upgrade_(std::move(upgrade)), slot_(std::move(slot)) {}
-
-  void read() {
-    parser_.emplace();
-    parser_->header_limit(kMaxHeader);
-    parser_->body_limit(kMaxBody);
-    stream_.expires_after(kHttpTimeout);
-    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
-      self->on_read(error);
-    });
-  }
-
- private:
-  void on_read(error_code error) {
-    if (error == http::error::body_limit) return refuse(http::status::payload_too_large);
-    if (error == http::error::header_limit) return refuse(http::status::request_header_fields_too_large);
-    if (error) return;
-    Request request = parser_->release();
-    auto response = answer_(request);
-    if (response.result() == http::status::switching_protocols) {
-      stream_.expires_never();
-      return upgrade_(stream_.release_socket(), std::move(request));
-    }
-    write(std::move(response), request.method() == http::verb::head);
-  }
-
-  void refuse(http::status status) {
-    http::response<http::string_body> response(status, 11);
-    response.keep_alive(false);
-    response.prepare_payload();
-    write(std::move(response), false);
-  }
-
-  void write(http::response<http::string_body> response, bool head) {
-    response_ = std::move(response);
-    serializer_.emplace(response_);
-    serializer_->split(head);
-    auto done = [self = shared_from_this()](error_code error, std::size_t) {
-      if (error) return;
-      if (self->response_.keep_alive()) return self->read();
-      error_code ignored;
-      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-    };
-    if (head) return http::async_write_header(stream_, *serializer_, done);
-    http::async_write(stream_, *serializer_, done);
-  }
-
-  beast::tcp_stream stream_;
-  beast::flat_buffer buffer_;
-  std::optional<http::request_parser<http::string_body>> parser_;
-  http::response<http::string_body> response_;
-  std::optional<http::response_serializer<http::string_body>> serializer_;
-  Answer answer_;
-  Upgrade upgrade_;
-  std::shared_ptr<void> slot_;  // counts open connections
-};
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -234,17 +67,17 @@ struct Server::Impl {
         error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
         std::make_shared<Connection>(
-            std::move(socket), [this](const Connection::Request& request) { return answer(request); },
-            [this](tcp::socket s, Connection::Request request) { add_browser(std::move(s), std::move(request)); }, slot)
+            std::move(socket), [this](const Request& request) { return answer(request); },
+            [this](tcp::socket s, Request request) { add_browser(std::move(s), std::move(request)); }, slot)
             ->read();
       }
       accept();
     });
   }
 
-  http::response<http::string_body> plain(const Connection::Request& request, http::status status, std::string_view type,
+  Response plain(const Request& request, http::status status, std::string_view type,
                                           std::string body) const {
-    http::response<http::string_body> response(status, request.version());
+    Response response(status, request.version());
     response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
     response.set(http::field::cache_control, "no-cache");
     response.set("X-Content-Type-Options", "nosniff");
@@ -255,18 +88,19 @@ struct Server::Impl {
     return response;
   }
 
-  http::response<http::string_body> fail(const Connection::Request& request, http::status status, std::string what) const {
+  Response fail(const Request& request, http::status status, std::string what) const {
     return plain(request, status, "text/plain; charset=utf-8", std::move(what) + "\n");
   }
 
-  http::response<http::string_body> answer(const Connection::Request& request) {
+  Response answer(const Request& request) {
     const auto path = request_path(view_of(request.target()));
     if (!path) return fail(request, http::status::bad_request, "malformed path");
     if (!origin_allowed("", view_of(request[http::field::host]), on_loopback)) {
       return fail(request, http::status::forbidden, "addressed by a foreign name: open " + url());
     }
     if (websocket::is_upgrade(request)) return answer_upgrade(request, *path);
-    if (request.method() == http::verb::post && path->starts_with("/api/")) return answer_post(request, *path);
+    if (request.method() == http::verb::post && path->starts_with("/api/")) return answer_change(request, *path, "application/json");
+    if (is_part(request)) return answer_change(request, *path, "application/octet-stream");
     if (request.method() != http::verb::get && request.method() != http::verb::head) {
       return fail(request, http::status::method_not_allowed, "only GET");
     }
@@ -275,17 +109,17 @@ struct Server::Impl {
     return answer_file(request, *path);
   }
 
-  /// Changes something: only for a page of this server, which names its origin, and never for a form (they cannot send JSON).
-  http::response<http::string_body> answer_post(const Connection::Request& request, const std::string& path) {
+  /// Changes something: only for a page of this server, which names its origin, and never for a form (they cannot send these types).
+  Response answer_change(const Request& request, const std::string& path, std::string_view type) {
     const std::string_view origin = view_of(request[http::field::origin]);
     const bool own = !origin.empty() && origin_allowed(origin, view_of(request[http::field::host]), on_loopback);
     if (!own) return fail(request, http::status::forbidden, "page of another origin");
-    if (!view_of(request[http::field::content_type]).starts_with("application/json")) return fail(request, http::status::unsupported_media_type, "only JSON");
-    const auto json = host.post(path, request.body());
+    if (!view_of(request[http::field::content_type]).starts_with(type)) return fail(request, http::status::unsupported_media_type, "only " + std::string(type));
+    const auto json = is_part(request) ? host.put(path, request.body()) : host.post(path, request.body());
     return json ? plain(request, http::status::ok, "application/json", *json) : fail(request, http::status::not_found, "no such resource");
   }
 
-  http::response<http::string_body> answer_document(const Connection::Request& request, const std::string& path) {
+  Response answer_document(const Request& request, const std::string& path) {
     auto document = host.document(path);
     if (!document) return fail(request, http::status::not_found, "no such document");
     auto response = plain(request, http::status::ok, document->type, std::move(document->text));
@@ -293,7 +127,7 @@ struct Server::Impl {
     return response;
   }
 
-  http::response<http::string_body> answer_upgrade(const Connection::Request& request, const std::string& path) const {
+  Response answer_upgrade(const Request& request, const std::string& path) const {
     if (path != "/ws") return fail(request, http::status::not_found, "the WebSocket is at /ws");
     if (!origin_allowed(view_of(request[http::field::origin]), view_of(request[http::field::host]), on_loopback)) {
       return fail(request, http::status::forbidden, "page of another origin");
@@ -302,7 +136,7 @@ struct Server::Impl {
     return {http::status::switching_protocols, request.version()};
   }
 
-  http::response<http::string_body> answer_api(const Connection::Request& request, const std::string& path) {
+  Response answer_api(const Request& request, const std::string& path) {
     if (path == "/api/tasks") return plain(request, http::status::ok, "application/json", task_list_json(options.hello.tasks));
     if (path == "/api/health") {
       return plain(request, http::status::ok, "application/json",
@@ -313,7 +147,7 @@ struct Server::Impl {
     return plain(request, http::status::ok, "application/json", *json);
   }
 
-  http::response<http::string_body> answer_file(const Connection::Request& request, const std::string& path) const {
+  Response answer_file(const Request& request, const std::string& path) const {
     const auto file = find_static_file(options.viewer_folder, path);
     if (!file && path == "/") {
       return fail(request, http::status::not_found, "The viewer is not built: run ./filum, which builds it, or `npm run build` in src/viewer.");
@@ -329,7 +163,7 @@ struct Server::Impl {
     return plain(request, http::status::ok, media_type(*file), std::move(body));
   }
 
-  void add_browser(tcp::socket socket, Connection::Request request) {
+  void add_browser(tcp::socket socket, Request request) {
     auto browser = std::make_shared<Browser>(std::move(socket), ++last_browser);
     browser->open(
         std::move(request), [this, weak = std::weak_ptr(browser)](Browser& b) { greet(b, weak); },

@@ -39,6 +39,8 @@ class ServerHost {
   virtual std::optional<std::string> api(std::string_view path) = 0;
   /// JSON text for POST `path` below /api with a JSON body, from a page of this server only; empty optional: not found.
   virtual std::optional<std::string> post(std::string_view /*path*/, const std::string& /*body*/) { return std::nullopt; }
+  /// JSON text for PUT `path` below /api/upload/ with a part of a file, from a page of this server only; empty optional: not found.
+  virtual std::optional<std::string> put(std::string_view /*path*/, const std::string& /*body*/) { return std::nullopt; }
   /// A page or picture below /documents, shown in a frame of the viewer.
   virtual std::optional<Document> document(std::string_view /*path*/) { return std::nullopt; }
 };

@@ -1,6 +1,6 @@
 if(TARGET filum_anatomy)
-  foreach(name nifti_volume head_scan brain_mesher)
-    filum_test(anatomy/${name})
+  foreach(name nifti_volume head_scan brain_mesher mesh_program)
+    filum_test(anatomy/${name} nlohmann_json::nlohmann_json)
     target_include_directories(anatomy_${name}_test SYSTEM PRIVATE ${FILUM_NIFTI_INCLUDE})
     target_include_directories(anatomy_${name}_test PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   endforeach()

@@ -8,46 +8,12 @@
 
 #include "base/error.h"
 #include "devices/forceps_calibration.h"
-#include "hardware/protocol/filum_protocol.h"
-#include "tests/devices/pty.h"
+#include "tests/devices/simulated_handle.h"
 
 namespace filum {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// A handle that sends what its two channels stand at, some thousand times a second.
-class Handle {
- public:
-  explicit Handle(Pty& pty) : thread_([this, &pty](std::stop_token stop) { send(pty, stop); }) {}
-  std::atomic<double> angle{1000.0}, force{300.0};  // [count]
-  /// Frames with what was set are on the line.
-  void wait() const {
-    const unsigned from = sent_;
-    while (sent_ < from + 20) std::this_thread::sleep_for(1ms);
-  }
-
- private:
-  void send(Pty& pty, const std::stop_token& stop) {
-    std::uint16_t sequence = 0;
-    for (std::uint32_t time = 0; !stop.stop_requested(); time += 250) {
-      const auto jitter = static_cast<double>(sequence % 3) - 1.0;
-      const filum_grip grip{0, 0, static_cast<std::uint16_t>(angle + jitter), static_cast<std::uint16_t>(force + jitter)};
-      filum_frame frame{};
-      filum_put_grip(&frame, &grip);
-      frame.device = 1;
-      frame.sequence = sequence++;
-      frame.time_us = time;
-      std::vector<std::uint8_t> wire(FILUM_MAX_WIRE);
-      wire.resize(filum_frame_encode(&frame, wire.data()));
-      if (!pty.write(wire)) std::this_thread::sleep_for(1ms);
-      ++sent_;
-      if (sequence % 8 == 0) std::this_thread::sleep_for(2ms);
-    }
-  }
-  std::atomic<unsigned> sent_ = 0;
-  std::jthread thread_;
-};
 
 CalibrationPlan plan(const Pty& pty, const std::string& folder) {
   CalibrationPlan p = calibration_plan(R"({"sensor":"S-17","identity":42,"repeats":2,"angles":[0,6,12,18,24],"forces":[0,0.5,1,2,3]})", pty.path(), FILUM_SOURCE_DIR, folder);
@@ -55,7 +21,7 @@ CalibrationPlan plan(const Pty& pty, const std::string& folder) {
 }
 
 /// Sets what is asked for and reads it, until all is taken. True count of an opening is 1000 + 80 a degree, of a load 300 + 900 a newton.
-void go_through(CalibrationSession& session, Handle& handle, double bend) {
+void go_through(CalibrationSession& session, SimulatedHandle& handle, double bend) {
   const std::vector<double> angles = {0, 6, 12, 18, 24, 24, 18, 12, 6, 0}, forces = {0, 0.5, 1, 2, 3, 3, 2, 1, 0.5, 0};
   for (int k = 0; k < 40; ++k) {
     const bool angle = k < 20;
@@ -84,7 +50,7 @@ class CalibrationSessionTest : public testing::Test {
 TEST_F(CalibrationSessionTest, LeadsThroughAllValuesAndWritesWhatForcepsRead) {
   Pty pty;
   CalibrationSession session(plan(pty, folder_));
-  Handle handle(pty);
+  SimulatedHandle handle(pty);
   EXPECT_EQ(session.status()["state"], "asking");
   EXPECT_NE(session.status()["instruction"].get<std::string>().find("0 deg"), std::string::npos);
   handle.wait();
@@ -107,7 +73,7 @@ TEST_F(CalibrationSessionTest, LeadsThroughAllValuesAndWritesWhatForcepsRead) {
 TEST_F(CalibrationSessionTest, RefusesACurveWithItsReasonAndWritesNothing) {
   Pty pty;
   CalibrationSession session(plan(pty, folder_));
-  Handle handle(pty);
+  SimulatedHandle handle(pty);
   go_through(session, handle, -2.9);  // the strain turns round
   EXPECT_EQ(session.status()["state"], "refused");
   EXPECT_FALSE(session.status()["fits"]["angle"]["why"].get<std::string>().empty());

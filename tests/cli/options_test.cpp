@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "program_call.h"
+
 namespace filum {
 namespace {
 
@@ -28,9 +30,9 @@ TEST(Options, UnknownOptionsAreRefused) {
 }
 
 TEST(Options, JsonIsOneLineAndBytesThatAreNoTextDoNotBreakIt) {
-  testing::internal::CaptureStdout();
-  print_json({{"name", "a\xff b"}, {"lines", "1\n2"}});
-  const std::string text = testing::internal::GetCapturedStdout();
+  const Ear out;
+  print_json(out.stream(), {{"name", "a\xff b"}, {"lines", "1\n2"}});
+  const std::string text = out.heard();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
   const auto read = nlohmann::json::parse(text);
   EXPECT_EQ(read.at("lines"), "1\n2");

@@ -3,27 +3,21 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <utility>  // before Asio
-
-#include <boost/asio.hpp>
-#include <boost/beast.hpp>
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
 
 #include "base/error.h"
+#include "server/connection.h"
 #include "server/control.h"
-#include "schema_check.h"
+#include "tests/server/client.h"
 
 namespace filum {
 namespace {
 
-namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
-namespace websocket = beast::websocket;
-using asio::ip::tcp;
 using nlohmann::json;
 
 // Remembers what it was asked for.
@@ -44,6 +38,11 @@ class RecordingHost : public ServerHost {
     if (path == "/documents/report") return Document{"text/html; charset=utf-8", "<h1>Report</h1>"};
     return std::nullopt;
   }
+  std::optional<std::string> put(std::string_view path, const std::string& body) override {
+    if (path != "/api/upload/1/0/0") return std::nullopt;
+    note([&] { sent.push_back(body.size()); });
+    return "{}";
+  }
   template <class Condition>
   bool wait(Condition condition) {
     std::unique_lock lock(mutex);
@@ -55,6 +54,7 @@ class RecordingHost : public ServerHost {
   std::vector<ClientMessage> commands;
   std::vector<bool> control;
   std::vector<std::string> posted;
+  std::vector<std::size_t> sent;  // [byte], of parts
 
  private:
   template <class Change>
@@ -63,37 +63,6 @@ class RecordingHost : public ServerHost {
     change();
     changed.notify_all();
   }
-};
-
-class Client {
- public:
-  explicit Client(std::uint16_t port, const std::string& origin = "", const std::string& host = "") : socket_(io_) {
-    beast::get_lowest_layer(socket_).connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), port));
-    socket_.set_option(websocket::stream_base::decorator([origin](websocket::request_type& request) {
-      if (!origin.empty()) request.set(http::field::origin, origin);
-    }));
-    socket_.handshake(host.empty() ? "127.0.0.1:" + std::to_string(port) : host, "/ws");
-  }
-  void say(const std::string& text) { socket_.write(asio::buffer(text)); }
-  json hear() {
-    beast::flat_buffer buffer;
-    socket_.read(buffer);
-    const json message = json::parse(beast::buffers_to_string(buffer.data()));
-    EXPECT_EQ(schema_.fault(message, "ServerMessage"), "");
-    return message;
-  }
-  json hear(const std::string& type) {
-    for (;;) {
-      json message = hear();
-      if (message.at("type") == type) return message;
-    }
-  }
-  void vanish() { beast::get_lowest_layer(socket_).close(); }
-
- private:
-  asio::io_context io_;
-  websocket::stream<tcp::socket> socket_;
-  SchemaCheck schema_;
 };
 
 class ServerTest : public testing::Test {
@@ -115,25 +84,7 @@ class ServerTest : public testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
-  http::response<http::string_body> get(const std::string& target, http::verb verb = http::verb::get, const std::string& host = "",
-                                        const std::string& body = "", const std::string& origin = "", const std::string& type = "") {
-    asio::io_context io;
-    tcp::socket socket(io);
-    socket.connect(tcp::endpoint(asio::ip::make_address("127.0.0.1"), server_->port()));
-    http::request<http::string_body> request(verb, target, 11);
-    request.set(http::field::host, host.empty() ? "127.0.0.1:" + std::to_string(server_->port()) : host);
-    if (!origin.empty()) request.set(http::field::origin, origin);
-    if (!type.empty()) request.set(http::field::content_type, type);
-    request.body() = body;
-    request.prepare_payload();
-    beast::error_code ignored;
-    http::write(socket, request, ignored);
-    http::response_parser<http::string_body> parser;
-    parser.skip(verb == http::verb::head);
-    beast::flat_buffer buffer;
-    http::read(socket, buffer, parser, ignored);
-    return parser.release();
-  }
+  http::response<http::string_body> get(const std::string& target, const Asked& asked = {}) { return fetch(server_->port(), target, asked); }
 
   std::filesystem::path folder_;
   RecordingHost host_;
@@ -143,19 +94,19 @@ class ServerTest : public testing::Test {
 TEST_F(ServerTest, ServesTheViewerAndNothingElse) {
   EXPECT_EQ(get("/").body(), "<title>Filum</title>");
   EXPECT_EQ(get("/index.html?x=1").result_int(), 200u);
-  EXPECT_EQ(get("/", http::verb::head).result_int(), 200u);
+  EXPECT_EQ(get("/", {.verb = http::verb::head}).result_int(), 200u);
   for (const char* path : {"/../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt", "/dist/../../secret.txt", "/none"}) {
     const auto response = get(path);
     EXPECT_EQ(response.result_int(), 404u) << path;
     EXPECT_EQ(response.body().find("secret"), std::string::npos);
   }
   EXPECT_EQ(get("/%zz").result_int(), 400u);
-  EXPECT_EQ(get("/", http::verb::post).result_int(), 405u);
+  EXPECT_EQ(get("/", {.verb = http::verb::post}).result_int(), 405u);
 }
 
 TEST_F(ServerTest, ChangesAreAskedForByPagesOfThisServerOnly) {
   const auto post = [&](const std::string& path, const std::string& origin, const std::string& type) {
-    return get(path, http::verb::post, "", R"({"dataset":"a"})", origin, type).result_int();
+    return get(path, {http::verb::post, "", R"({"dataset":"a"})", origin, type}).result_int();
   };
   const std::string own = "http://127.0.0.1:" + std::to_string(server_->port()), path = "/api/reconcile/start";
   EXPECT_EQ(post(path, "", "application/json"), 403u) << "no page says so";
@@ -166,6 +117,22 @@ TEST_F(ServerTest, ChangesAreAskedForByPagesOfThisServerOnly) {
   EXPECT_EQ(post("/api/nothing", own, "application/json"), 404u);
   ASSERT_EQ(host_.posted.size(), 1u);
   EXPECT_EQ(host_.posted[0], R"({"dataset":"a"})");
+}
+
+TEST_F(ServerTest, PartsOfFilesMayBeLongerThanOtherRequests) {
+  const std::string own = "http://127.0.0.1:" + std::to_string(server_->port()), bytes = "application/octet-stream", part(kMaxPart, 'x');
+  const auto put = [&](const std::string& path, const std::string& body, const std::string& origin, const std::string& type) {
+    return get(path, {http::verb::put, "", body, origin, type}).result_int();
+  };
+  EXPECT_EQ(put("/api/upload/1/0/0", part, own, bytes), 200u);
+  EXPECT_EQ(put("/api/upload/9/0/0", "x", own, bytes), 404u);
+  EXPECT_EQ(put("/api/upload/1/0/0", part + "x", own, bytes), 413u);
+  EXPECT_EQ(put("/api/upload/1/0/0", part, "", bytes), 403u) << "no page says so";
+  EXPECT_EQ(put("/api/upload/1/0/0", part, "http://evil.example", bytes), 403u);
+  EXPECT_EQ(put("/api/upload/1/0/0", part, own, "text/plain"), 415u) << "what a form can send";
+  EXPECT_EQ(put("/api/reconcile/start", part, own, bytes), 413u);
+  EXPECT_EQ(put("/api/reconcile/start", "x", own, bytes), 405u);
+  EXPECT_EQ(host_.sent, (std::vector<std::size_t>{kMaxPart}));
 }
 
 TEST_F(ServerTest, DocumentsRunNoScripts) {
@@ -186,9 +153,9 @@ TEST_F(ServerTest, AnswersUnderApi) {
 }
 
 TEST_F(ServerTest, RefusesOversizedRequestsAndForeignNames) {
-  EXPECT_EQ(get("/", http::verb::post, "", std::string(100'000, 'x')).result_int(), 413u);
+  EXPECT_EQ(get("/", {http::verb::post, "", std::string(100'000, 'x'), "", ""}).result_int(), 413u);
   EXPECT_EQ(get("/" + std::string(20'000, 'a')).result_int(), 431u);
-  EXPECT_EQ(get("/", http::verb::get, "evil.example").result_int(), 403u);
+  EXPECT_EQ(get("/", {.host = "evil.example"}).result_int(), 403u);
   EXPECT_EQ(get("/").result_int(), 200u);
 }
 

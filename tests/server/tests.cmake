@@ -1,4 +1,6 @@
 find_package(nlohmann_json REQUIRED)
+filum_test(server/browser nlohmann_json::nlohmann_json)
+filum_test(server/connection)
 filum_test(server/client_message nlohmann_json::nlohmann_json)
 filum_test(server/control)
 filum_test(server/encode nlohmann_json::nlohmann_json)

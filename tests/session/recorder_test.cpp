@@ -1,15 +1,14 @@
 #include "session/recorder.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <atomic>
-#include <csignal>
 #include <functional>
 #include <thread>
 
 #include "base/error.h"
 #include "session/recording_reader.h"
+#include "tests/session/disk_limit.h"
 #include "tests/session/synthetic.h"
 
 namespace filum {
@@ -108,23 +107,6 @@ TEST(Recorder, AFullQueueIsCountedAndRecorded) {
   EXPECT_EQ(event.value, 15.0);
   EXPECT_EQ(event.unit.view(), "steps");
 }
-
-/// Files of this process may not grow past `bytes` while in scope: what a full disk does to a database,
-/// without a disk.
-class DiskLimit {
- public:
-  explicit DiskLimit(rlim_t bytes) {
-    ::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit now = before_;
-    now.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &now);
-  }
-  ~DiskLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
 
 TEST(Recorder, AFullDiskIsSaidAndNothingIsLostWhenThereIsSpaceAgain) {
   const Folder folder;

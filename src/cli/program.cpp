@@ -1,0 +1,61 @@
+#include "cli/program.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <sstream>
+
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+void add_all(CLI::App& app, Action& action) {
+  app.name("filum");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", program_text());
+  for (const auto add : {add_train, add_run, add_replay, add_score, add_export, add_list, add_validate, add_bench, add_analyse, add_calibrate, add_doctor, add_reconcile, add_import, add_mesh})
+    add(app, action);
+}
+
+bool known(const CLI::App& app, const std::string& word) {
+  const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
+  return std::any_of(subcommands.begin(), subcommands.end(), [&](const CLI::App* sub) { return sub->get_name() == word; });
+}
+
+/// Help on io.out, faults on io.err.
+int explain(const CLI::App& app, const CLI::ParseError& error, const Streams& io) {
+  std::ostringstream out, err;
+  const int code = app.exit(error, out, err);
+  std::fputs(out.str().c_str(), io.out);
+  std::fputs(err.str().c_str(), io.err);
+  return code == 0 ? kDone : kBadInput;
+}
+
+}  // namespace
+
+int program(int argc, const char* const* argv, const Streams& io) {
+  CLI::App app{"Filum: a microsurgery skills trainer"};
+  Action action;
+  add_all(app, action);
+  if (argc > 1 && argv[1][0] != '-' && !known(app, argv[1])) {
+    std::fprintf(io.err, "filum: subcommand: found %s, expected one of those that `filum --help` lists\n", argv[1]);
+    return kBadInput;
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return explain(app, error, io);
+  }
+  try {
+    return action.run(io);
+  } catch (const InputError& error) {
+    std::fprintf(io.err, "filum: %s\n", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(io.err, "filum: %s\n", error.what());
+    return kFailed;
+  }
+}
+
+}  // namespace filum

@@ -1,0 +1,42 @@
+// filum bench: the keys of the contract and that they agree with one another; no speed is asked for, the machine may be busy.
+
+#include <gtest/gtest.h>
+
+#include "program_call.h"
+
+namespace filum {
+namespace {
+
+TEST(Bench, JsonHoldsTheKeysOfTheContract) {
+  const auto d = call({"bench", "--json", "rod-100"}).json();
+  expect_keys(d, {"machine", "benches"});
+  ASSERT_EQ(d["benches"].size(), 1u);
+  const auto& b = d["benches"][0];
+  expect_keys(b, {"name", "nodes", "contacts", "dt_ms", "steps", "p50_ms", "p99_ms", "max_ms", "real_time_factor", "stages", "reference"});
+  expect_keys(b["reference"], {"name", "p50_ms"});
+  EXPECT_EQ(b["name"], "rod-100");
+  EXPECT_EQ(b["nodes"], 100);
+  EXPECT_GT(b["steps"], 0);
+  EXPECT_LE(b["p50_ms"], b["p99_ms"]);
+  EXPECT_LE(b["p99_ms"], b["max_ms"]);
+  EXPECT_GT(b["p50_ms"], 0.0);
+}
+
+TEST(Bench, WildHandsAreCountedByTask) {
+  const auto d = call({"bench", "--json", "--wild", "2", "--wild-seconds", "0.02", "grasp-transfer"}).json();
+  expect_keys(d, {"machine", "wild"});
+  ASSERT_EQ(d["wild"].size(), 1u);
+  EXPECT_EQ(d["wild"][0]["task"], "grasp-transfer");
+  EXPECT_EQ(d["wild"][0]["seeds"], 2);
+  EXPECT_NEAR(d["wild"][0]["scene_s"].get<double>(), 0.04, 1e-9);
+  EXPECT_TRUE(d["wild"][0]["faults"].empty());
+}
+
+TEST(Bench, WhatItDoesNotKnowIsRefused) {
+  expect_refused({"bench", "--json", "warp-drive"}, {"found warp-drive", "expected", "rod-100"});
+  expect_refused({"bench", "--wild", "0"}, {"--wild"});
+  expect_refused({"bench", "--json", "--wild", "1", "no-such-task"}, {"found no-such-task", "knot-square"});
+}
+
+}  // namespace
+}  // namespace filum

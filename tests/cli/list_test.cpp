@@ -1,0 +1,58 @@
+// filum list: names are those of the folders, whatever order the file system gives them in.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "program_call.h"
+#include "tests/session/synthetic.h"
+
+namespace filum {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::set<std::string> names_of(const nlohmann::ordered_json& list) {
+  std::set<std::string> names;
+  for (const auto& one : list) names.insert(one.is_object() ? one["name"].get<std::string>() : one.get<std::string>());
+  return names;
+}
+
+TEST(List, EveryTaskOnDiskIsListedOnceWithItsTitle) {
+  const auto d = call({"list", "--json"}).json();
+  expect_keys(d, {"tasks", "models", "curricula", "rigs", "effects"});
+  std::set<std::string> on_disk;
+  for (const auto& at : fs::recursive_directory_iterator(fs::path(FILUM_SOURCE_DIR) / "curricula"))
+    if (at.path().filename() == "task.yaml") on_disk.insert(at.path().parent_path().filename());
+  EXPECT_EQ(names_of(d["tasks"]), on_disk);
+  EXPECT_EQ(d["tasks"].size(), on_disk.size());
+  for (const auto& task : d["tasks"]) EXPECT_FALSE(task["title"].get<std::string>().empty()) << task["name"];
+  EXPECT_TRUE(names_of(d["curricula"]).count("research"));
+  EXPECT_EQ(names_of(d["rigs"]), (std::set<std::string>{"tissue-block", "spatula-press", "vessel-inflation", "suture-cantilever", "suture-pull", "needle-insertion", "forceps-bridge", "tip-hold"}));
+  for (const char* effect : {"viscoelastic-relaxation", "mains-hum", "elastic_rod", "needle_track"}) EXPECT_TRUE(names_of(d["effects"]).count(effect)) << effect;
+  for (const auto& model : d["models"]) EXPECT_TRUE(fs::exists(fs::path(FILUM_SOURCE_DIR) / "models" / (model.get<std::string>() + ".yaml"))) << model;
+}
+
+TEST(List, TextNamesTheSameTasks) {
+  const Call text = call({"list"});
+  EXPECT_EQ(text.code, kDone);
+  for (const auto& name : names_of(call({"list", "--json"}).json()["tasks"])) EXPECT_NE(text.out.find("\n  " + name + " "), std::string::npos) << name;
+}
+
+TEST(List, ATaskThatCannotBeReadIsNamedAndTheOthersAreStillListed) {
+  const synthetic::Folder root;
+  for (const char* folder : {"models", "curricula"}) fs::copy(fs::path(FILUM_SOURCE_DIR) / folder, root.path() / folder, fs::copy_options::recursive);
+  const std::string spoilt = root.file("curricula/knot-square/task.yaml");
+  std::ofstream(spoilt) << "format: filum-task/1\ntitle: 3\nknot: fancy\n";
+  const Call c = call({"list", "--json", "--root", root.file("")});
+  EXPECT_EQ(c.code, kBadInput);
+  EXPECT_NE(c.err.find("knot-square/task.yaml"), std::string::npos) << c.err;
+  const auto names = names_of(nlohmann::ordered_json::parse(c.out)["tasks"]);
+  EXPECT_FALSE(names.count("knot-square"));
+  EXPECT_TRUE(names.count("knot-granny"));
+}
+
+}  // namespace
+}  // namespace filum

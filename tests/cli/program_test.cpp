@@ -1,0 +1,35 @@
+#include "cli/program.h"
+
+#include <gtest/gtest.h>
+
+#include "program_call.h"
+
+namespace filum {
+namespace {
+
+const char* const kCommands[] = {"train", "run", "replay", "score", "export", "list", "validate", "bench", "analyse", "calibrate", "doctor", "reconcile", "import"};
+
+TEST(Program, EveryCommandExplainsItselfAndIsListed) {
+  const Call all = call({"--help"});
+  EXPECT_EQ(all.code, kDone);
+  for (const char* name : kCommands) {
+    EXPECT_NE(all.out.find(std::string("  ") + name + " "), std::string::npos) << name;
+    const Call help = call({name, "--help"});
+    EXPECT_EQ(help.code, kDone) << name;
+    EXPECT_NE(help.out.find("Usage"), std::string::npos) << name;
+    EXPECT_EQ(help.err, "") << name;
+  }
+  EXPECT_NE(all.out.find("  mesh "), std::string::npos);  // its help is that of another program: mesh_test.cpp
+  EXPECT_EQ(call({"--version"}).out, program_text() + "\n");
+}
+
+TEST(Program, WhatItDoesNotKnowIsBadInputAndSaidOnStderr) {
+  expect_refused({}, {"subcommand"});
+  expect_refused({"nonsense"}, {"found nonsense", "expected one of those that `filum --help` lists"});
+  expect_refused({"list", "--jsn"}, {"--jsn"});
+  expect_refused({"score"}, {"file"});
+  expect_refused({"run", "tip-hold", "--motion-scale", "0"}, {"--motion-scale"});
+}
+
+}  // namespace
+}  // namespace filum

@@ -1,0 +1,47 @@
+// filum replay: equal recordings are told from altered ones, to the step.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "altered_recording.h"
+#include "program_call.h"
+#include "tests/session/synthetic.h"
+
+namespace filum {
+namespace {
+
+TEST(Replay, ARecordingStepsToTheSameStates) {
+  const synthetic::Folder folder;
+  const auto run = nlohmann::ordered_json::parse(recorded_run(folder.file("one")));
+  const auto d = call({"replay", folder.file("one"), "--json"}).json();
+  EXPECT_TRUE(d["identical"].get<bool>());
+  EXPECT_TRUE(d["first_difference"].is_null());
+  EXPECT_EQ(d["steps"], run["steps"]);
+  EXPECT_EQ(d["recorded_by"], program_text());
+  EXPECT_TRUE(d["finished"].get<bool>());
+  EXPECT_EQ(call({"replay", folder.file("one")}).out, "identical: " + run["steps"].dump() + " steps\n");
+}
+
+TEST(Replay, TheFirstStepThatDiffersIsNamedAndTheExitCodeSaysSo) {
+  const synthetic::Folder folder;
+  recorded_run(folder.file("one"));
+  write_altered(folder.file("one"), folder.file("altered"));
+  const Call c = call({"replay", folder.file("altered"), "--json"});
+  EXPECT_EQ(c.code, kFailed);
+  const auto d = nlohmann::ordered_json::parse(c.out);
+  EXPECT_FALSE(d["identical"].get<bool>());
+  EXPECT_EQ(d["first_difference"]["step"], kAlteredStep);
+  EXPECT_EQ(d["first_difference"]["array"], "state");
+  EXPECT_NE(call({"replay", folder.file("altered")}).out.find("first difference at step 100 "), std::string::npos);
+}
+
+TEST(Replay, WhatIsNoRecordingIsBadInput) {
+  const synthetic::Folder folder;
+  std::ofstream(folder.file("text")) << "not a recording";
+  expect_refused({"replay", folder.file("text"), "--json"}, {folder.file("text"), "expected"});
+  expect_refused({"replay", folder.file("absent"), "--json"}, {folder.file("absent"), "expected"});
+}
+
+}  // namespace
+}  // namespace filum
