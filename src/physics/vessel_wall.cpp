@@ -384,8 +384,8 @@ void VesselWall::add_pair(WallHistory& h) noexcept {
   pairs_.count(h.n, h.newest);
 }
 
-WallSummary VesselWall::step(WallState& state) noexcept {
-  WallSummary summary;
+/// Where the iteration begins: the guess, or where the wall is, if the guess is violent and that is better. False if neither is sound.
+bool VesselWall::begin(const WallState& state) noexcept {
   taken_ = 1.0;
   guess(state);
   pressed_ = std::any_of(pressure_.begin(), pressure_.end(), [](double p) { return p != 0.0; });
@@ -402,44 +402,56 @@ WallSummary VesselWall::step(WallState& state) noexcept {
     }
     x_ = trial_x_;
   }
-  const bool sound = std::isfinite(energy_);
   find_frames(x_);
   gather_springs();
   residual_ = trial_residual_;
   elastic_ = trial_elastic_;
   push_ = trial_push_;
-  while (sound) {
+  return std::isfinite(energy_);
+}
+
+/// What the line search found is where the wall is now.
+void VesselWall::accept(WallState& state) noexcept {
+  add_pair(state.history);
+  energy_ = trial_energy_;
+  push_.swap(trial_push_);
+  x_.swap(trial_x_);
+  residual_.swap(trial_residual_);
+  elastic_.swap(trial_elastic_);
+  if (!springs_stale()) return;
+  gather_springs();
+  count_springs(state.history);
+}
+
+/// Quasi-Newton steps until the residual is within the tolerance, the line search finds nothing or there were too many.
+void VesselWall::iterate(WallState& state, WallSummary& summary) noexcept {
+  for (;;) {
     summary.residual = residual_.colwise().norm().maxCoeff();
     summary.converged = summary.residual <= options_.tolerance;
     const bool settled = summary.iterations > 0 || summary.residual <= kQuiet * options_.tolerance;  // what is left creeps home
-    if ((summary.converged && settled) || summary.iterations == options_.max_iterations) break;
+    if ((summary.converged && settled) || summary.iterations == options_.max_iterations) return;
     if (summary.iterations == 0) recall(state.history);
     direction(state.history);
-    if (!advance(state)) {
-      if (state.history.n > 0 && summary.iterations < options_.max_iterations) {  // what was learnt misleads: once more without
-        state.history.n = 0;
-        pairs_.forget();
-        ++summary.iterations;
-        continue;
-      }
+    if (advance(state)) {
+      ++summary.iterations;
+      accept(state);
+    } else if (state.history.n > 0 && summary.iterations < options_.max_iterations) {  // what was learnt misleads: once more without
+      state.history.n = 0;
+      pairs_.forget();
+      ++summary.iterations;
+    } else {
       trial_x_ = x_;
       evaluate(state);  // pushes as they are here
-      break;
-    }
-    ++summary.iterations;
-    add_pair(state.history);
-    energy_ = trial_energy_;
-    push_.swap(trial_push_);
-    x_.swap(trial_x_);
-    residual_.swap(trial_residual_);
-    elastic_.swap(trial_elastic_);
-    if (springs_stale()) {
-      gather_springs();
-      count_springs(state.history);
+      return;
     }
   }
-  summary.sound = sound;
-  if (sound) {
+}
+
+WallSummary VesselWall::step(WallState& state) noexcept {
+  WallSummary summary;
+  summary.sound = begin(state);
+  if (summary.sound) {
+    iterate(state, summary);
     state.v = (x_ - state.x) / options_.dt;
     state.x = x_;
   } else {

@@ -149,6 +149,9 @@ class VesselWall {
   bool springs_stale() const noexcept;
   void find_frames(const Points& x) noexcept;
   void guess(const WallState& state) noexcept;
+  bool begin(const WallState& state) noexcept;
+  void iterate(WallState& state, WallSummary& summary) noexcept;
+  void accept(WallState& state) noexcept;
   double evaluate(const WallState& state) noexcept;  // energy [J] and residual at trial_x_; infinite if an element is inside out
   void precondition(Eigen::VectorXf& b) noexcept;
   void count_springs(const WallHistory& h) noexcept;

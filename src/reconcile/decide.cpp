@@ -57,8 +57,7 @@ struct Challenge {
   Fit before, after;       // predictions of the trials marked hold_out
 };
 
-void add_squares(const RigModel& model, const Noise& noise, const Fit& f, double& sum, int& n) {
-  (void)model;
+void add_squares(const Noise& noise, const Fit& f, double& sum, int& n) {
   for (const auto& trial : f.residual)
     for (std::size_t c = 0; c < trial.size(); ++c)
       for (const double r : trial[c])
@@ -96,8 +95,8 @@ Challenge challenge(const Search& search, const Fit& base, const Fit& named, con
     if (a[i].chi2 > options.rules.fold_unlearnt * b[i].chi2 && parts.size() > 2) continue;
     before += b[i].chi2 / search.dispersion() - b[i].samples;
     after += a[i].chi2 / search.dispersion() - a[i].samples;
-    add_squares(all.model(), all.noise(), b[i], sb, n);
-    add_squares(all.model(), all.noise(), a[i], sa, m);
+    add_squares(all.noise(), b[i], sb, n);
+    add_squares(all.noise(), a[i], sa, m);
   }
   if (marked) out.before = b[0], out.after = a[0];
   if (n == 0) return out;
@@ -239,8 +238,6 @@ std::set<Effect> common(const Fit& winner, const std::vector<const Fit*>& rivals
   return shared;
 }
 
-void say(Result& r, const std::string& sentence) { r.sentence = sentence; }
-
 /// Median size of the gain errors that a fit asks of the records: what no instrument does is not explained.
 double gain_asked(const Fitter& fitter, const Fit& f) {
   std::vector<double> sizes;
@@ -262,75 +259,103 @@ Fit with_checked_steps(const Fitter& fitter, const Fit& f) {
   return usual ? f : stepped.fit(f.forms, f.base, f.params, {3, 1e-5}, &f);
 }
 
-void name(const Search& search, const Fit& winner, Result& r, const Options& options) {
-  const auto rivals = rivals_of(search, winner, r.rules, r.not_testable);
-  const Fitter& fitter = search.fitter();
-  const Challenge c = challenge(search, search.base(), winner, options);
+void note(const Challenge& c, Result& r) {
   r.held_out = c.gap;
   r.held_out_how = c.how;
   r.held_before = c.before, r.held_after = c.after;
-  const bool holds = !c.done || c.explained >= r.rules.held_out;
-  const double explained = search.explained(winner);
-  const bool confirmed = confirm(search, winner, options, r);
+}
+
+/// As it stands in the list of rivals.
+Tried as_rival(const Search& search, const Fit& f) { return {effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""}; }
+
+/// The best candidates but one (null: none left out).
+void list_rivals(const Search& search, const Fit* but, std::size_t most, Result& r) {
+  for (const Fit& f : search.candidates())
+    if (&f != but && r.rivals.size() < most) r.rivals.push_back(as_rival(search, f));
+}
+
+void estimate(const Search& search, const Fit& winner, Result& r) {
+  const Fitter& fitter = search.fitter();
   const Fit sure = with_checked_steps(fitter, winner);
   r.effects = effect_estimates(fitter, sure, search.dispersion());
   for (const Fit& other : search.other_forms(winner, r.rules.tie)) widen_by_forms(r.effects, effect_estimates(fitter, other, search.dispersion()));
   r.baseline = baseline_estimates(fitter, sure, search.dispersion());
-  for (const Fit& f : search.candidates())
-    if (&f != &winner && r.rivals.size() < 6) r.rivals.push_back({effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""});
-  if (!confirmed) {
-    r.verdict = "unknown";
-    r.effects.clear();
-    say(r, "Something is missing. The reduced model would name " + names(effects_in(winner)) + ", but " + r.confirmation->solver + " does not bear it out.");
-    return;
-  }
-  if (explained < r.rules.explained || !holds) {
-    r.verdict = "unknown";
-    r.effects.clear();
-    char text[300];
-    std::snprintf(text, sizeof text, "Something is missing that no candidate explains: the best, %s, covers %.0f %% of it%s.", names(effects_in(winner)).c_str(), 100 * explained,
-                  holds ? "" : " and fails on protocols it was not fitted to");
-    say(r, text);
-    return;
-  }
+}
+
+/// Why the best set is not named, in words; empty if it may be.
+std::string objection(const Search& search, const Fit& winner, const Challenge& c, bool confirmed, const Result& r) {
+  if (!confirmed) return "Something is missing. The reduced model would name " + names(effects_in(winner)) + ", but " + r.confirmation->solver + " does not bear it out.";
+  const bool holds = !c.done || c.explained >= r.rules.held_out;
+  const double explained = search.explained(winner);
+  if (explained >= r.rules.explained && holds) return "";
+  char text[300];
+  std::snprintf(text, sizeof text, "Something is missing that no candidate explains: the best, %s, covers %.0f %% of it%s.", names(effects_in(winner)).c_str(), 100 * explained,
+                holds ? "" : " and fails on protocols it was not fitted to");
+  return text;
+}
+
+bool leaves_a_part(const Search& search, const Fit& winner, const Rules& rules) {
   const Structure left = search.structure(winner);
-  r.partial = left.z > r.rules.partial_structure && left.excess > r.rules.partial_share * (search.base().chi2 - winner.chi2 + left.excess);
+  if (left.z > rules.partial_structure && left.excess > rules.partial_share * (search.base().chi2 - winner.chi2 + left.excess)) return true;
   // a law whose value stands at the end of its range is not believed to be the whole of what acts (discovery.md 4.3: inside bounds)
-  r.partial = r.partial || winner.at_bound || gain_asked(fitter, winner) > r.rules.gain_most;
-  if (rivals.empty()) {
-    r.verdict = "effect";
-    say(r, "The measurements behave as if " + names(effects_in(winner)) + (r.partial ? " acted, among something else that remains unnamed." : " acted, under these protocols.") +
-               " A rival that came within " + std::to_string(static_cast<int>(r.rules.tie)) + " units of BIC would make it ambiguous.");
-    return;
-  }
-  const auto shared = common(winner, rivals);
-  if (!shared.empty() && winner.forms.size() > 1) {
-    r.verdict = "effect";
-    r.partial = true;
-    std::erase_if(r.effects, [&](const NamedEffect& e) { return shared.count(e.effect) == 0; });
-    say(r, "All sets that explain the measurements share " + names({shared.begin(), shared.end()}) + "; what acts beside it is not decided.");
-    return;
-  }
+  return winner.at_bound || gain_asked(search.fitter(), winner) > rules.gain_most;
+}
+
+std::string what_would(const NextExperiment& next) {
+  char text[60];
+  std::snprintf(text, sizeof text, ", which decides in %.0f of 50 simulated repetitions", 50 * next.chance);
+  return (next.chance >= 0.5 ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + next.protocol + text + ".";
+}
+
+/// The winner and its rivals, how alike they are, and the experiment that would part them.
+void leave_open(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, Result& r) {
   r.verdict = "ambiguous";
   r.effects.clear();
   r.rivals.clear();
-  r.rivals.push_back({effects_in(winner), form_text(winner), search.bic(winner) - search.bic(search.base()), explained, false, ""});
-  for (const Fit* f : rivals) r.rivals.push_back({effects_in(*f), form_text(*f), search.bic(*f) - search.bic(search.base()), search.explained(*f), false, ""});
-  std::string others;
-  for (const Fit* f : rivals) others += (others.empty() ? "" : " or ") + names(effects_in(*f));
-  say(r, "These trials cannot tell " + names(effects_in(winner)) + " from " + others + ".");
-  const Screen screen(fitter, search.base());
-  r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
-  r.masked = screen.score(*winner.forms[0], winner.params[0]).masked;
   std::vector<const Fit*> all = rivals;
   all.insert(all.begin(), &winner);
   std::vector<double> evidence;
-  for (const Fit* f : all) evidence.push_back(search.bic(*f));
-  r.next = next_experiment(fitter, all, evidence, search.dispersion(), r.rules.tie);
-  if (!r.next) return;
-  char text[60];
-  std::snprintf(text, sizeof text, ", which decides in %.0f of 50 simulated repetitions", 50 * r.next->chance);
-  r.sentence += (r.next->chance >= 0.5 ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + r.next->protocol + text + ".";
+  std::string others;
+  for (const Fit* f : all) {
+    r.rivals.push_back(as_rival(search, *f));
+    evidence.push_back(search.bic(*f));
+    if (f != &winner) others += (others.empty() ? "" : " or ") + names(effects_in(*f));
+  }
+  r.sentence = "These trials cannot tell " + names(effects_in(winner)) + " from " + others + ".";
+  const Screen screen(search.fitter(), search.base());
+  r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
+  r.masked = screen.score(*winner.forms[0], winner.params[0]).masked;
+  r.next = next_experiment(search.fitter(), all, evidence, search.dispersion(), r.rules.tie);
+  if (r.next) r.sentence += what_would(*r.next);
+}
+
+void name(const Search& search, const Fit& winner, Result& r, const Options& options) {
+  const auto rivals = rivals_of(search, winner, r.rules, r.not_testable);
+  const Challenge c = challenge(search, search.base(), winner, options);
+  note(c, r);
+  const bool confirmed = confirm(search, winner, options, r);
+  estimate(search, winner, r);
+  list_rivals(search, &winner, 6, r);
+  if (const std::string why = objection(search, winner, c, confirmed, r); !why.empty()) {
+    r.verdict = "unknown";
+    r.effects.clear();
+    r.sentence = why;
+    return;
+  }
+  r.partial = leaves_a_part(search, winner, r.rules);
+  const auto shared = common(winner, rivals);
+  if (rivals.empty()) {
+    r.verdict = "effect";
+    r.sentence = "The measurements behave as if " + names(effects_in(winner)) + (r.partial ? " acted, among something else that remains unnamed." : " acted, under these protocols.") +
+                 " A rival that came within " + std::to_string(static_cast<int>(r.rules.tie)) + " units of BIC would make it ambiguous.";
+  } else if (!shared.empty() && winner.forms.size() > 1) {
+    r.verdict = "effect";
+    r.partial = true;
+    std::erase_if(r.effects, [&](const NamedEffect& e) { return shared.count(e.effect) == 0; });
+    r.sentence = "All sets that explain the measurements share " + names({shared.begin(), shared.end()}) + "; what acts beside it is not decided.";
+  } else {
+    leave_open(search, winner, rivals, r);
+  }
 }
 
 /// How near the best candidate came where nothing is named.
@@ -357,23 +382,20 @@ void name_nothing(const Search& search, Result& r, const Options& options) {
       }
   const bool seen = s.z > r.rules.structure && n > 0 && std::sqrt(sum / n * (1.0 - 1.0 / s.dispersion)) > r.rules.materiality;
   const Challenge c = challenge(search, search.base(), search.base(), options);
-  r.held_out = c.gap;
-  r.held_out_how = c.how;
-  r.held_before = c.before, r.held_after = c.after;
+  note(c, r);
   r.baseline = r.baseline_alone;
-  for (const Fit& f : search.candidates())
-    if (r.rivals.size() < 4) r.rivals.push_back({effects_in(f), form_text(f), search.bic(f) - search.bic(search.base()), search.explained(f), false, ""});
+  list_rivals(search, nullptr, 4, r);
   if (seen) {
     r.verdict = "unknown";
-    say(r, "The residual has a shape that noise does not have, and no candidate explains it.");
+    r.sentence = "The residual has a shape that noise does not have, and no candidate explains it.";
   } else if (refit_matters(search, r.rules)) {
     r.verdict = "parameter";
-    say(r, "The model's form is right; its parameters are not those of the model file, but lie within their stated range." + nearest(search, r));
+    r.sentence = "The model's form is right; its parameters are not those of the model file, but lie within their stated range." + nearest(search, r);
   } else {
     r.verdict = "agree";
     char text[100];
     std::snprintf(text, sizeof text, "Nothing is missing beyond the noise and %.2g %% of full scale.", 100 * r.rules.materiality);
-    say(r, text + nearest(search, r));
+    r.sentence = text + nearest(search, r);
   }
 }
 
@@ -428,7 +450,7 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   r.dispersion = search.dispersion();
   r.before = search.base();
   r.after = winner != nullptr ? *winner : search.base();
-  r.fit = gap_of(fitter.model(), r.noise, r.before, r.after, fitter.use);
+  r.fit = gap_of(r.noise, r.before, r.after);
   r.structure_before = search.structure(search.base()).z;
   r.structure_after = search.structure(r.after).z;
   if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise), r.where_by = localise_by(fitter.model(), r.before, r.noise);
@@ -440,11 +462,11 @@ void finish(const Search& search, const Fit* winner, Result& r) {
 
 }  // namespace
 
-Gap gap_of(const RigModel& model, const Noise& noise, const Fit& before, const Fit& after, const std::vector<bool>&) {
+Gap gap_of(const Noise& noise, const Fit& before, const Fit& after) {
   double sb = 0, sa = 0;
   int n = 0, m = 0;
-  add_squares(model, noise, before, sb, n);
-  add_squares(model, noise, after, sa, m);
+  add_squares(noise, before, sb, n);
+  add_squares(noise, after, sa, m);
   return {n > 0 ? std::sqrt(sb / n) : 0.0, m > 0 ? std::sqrt(sa / m) : 0.0};
 }
 
@@ -460,15 +482,9 @@ Result reconcile(const Dataset& d, const Options& options) {
     if (options.progress) options.progress("lint", 0.0);
     r.not_testable = lint(*model, r.forms, options.rules.masked, options.rules.testable);
     // what the inputs hide altogether cannot be named; what lacks a condition stays as a rival
-    std::vector<Form> seen;
-    for (const Form& f : r.forms) {
-      const auto hidden = std::find_if(r.not_testable.begin(), r.not_testable.end(), [&](const NotTestable& n) {
-        return n.effect == f.effect && (n.why.find("masked") != std::string::npos || n.why.find("even a strong") != std::string::npos || n.why.find("sampled") != std::string::npos ||
-                                        n.why.find("too few") != std::string::npos);
-      });
-      if (hidden == r.not_testable.end()) seen.push_back(f);
-    }
-    r.forms = seen;
+    std::erase_if(r.forms, [&](const Form& f) {
+      return std::any_of(r.not_testable.begin(), r.not_testable.end(), [&](const NotTestable& n) { return n.effect == f.effect && n.hidden; });
+    });
     Search search(*model, r.forms, options);
     search.run();
     if (options.progress) options.progress("challenge", 0.85);

@@ -61,14 +61,98 @@ Json noise_json(const Dataset& d, const Result& r) {
   return out;
 }
 
+Json where_json(const std::vector<Cell>& cells) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < cells.size() && i < 12; ++i) out.push_back({{"trial", cells[i].trial}, {"phase", cells[i].phase}, {"range", cells[i].range}, {"share", finite(cells[i].share)}});
+  return out;
+}
+
+Json where_by_json(const std::vector<Share>& shares) {
+  Json out = Json::array();
+  for (const Share& w : shares) out.push_back({{"axis", w.axis}, {"bin", w.bin}, {"share", finite(w.share)}, {"deviations", finite(w.deviations)}});
+  return out;
+}
+
+Json not_testable_json(const std::vector<NotTestable>& all) {
+  Json out = Json::array();
+  for (const NotTestable& n : all) out.push_back({{"effect", info(n.effect).name}, {"why", n.why}, {"needs", n.needs}});
+  return out;
+}
+
+Json tried_json(const std::vector<Tried>& all) {
+  Json out = Json::array();
+  for (const Tried& t : all) out.push_back({{"effects", names(t.effects)}, {"form", t.form}, {"evidence", finite(-t.evidence)}, {"explained", finite(t.explained)}, {"why", t.why}});
+  return out;
+}
+
+Json screened_json(const std::vector<Screened>& all) {
+  Json out = Json::array();
+  for (const Screened& x : all) out.push_back({{"effect", info(x.effect).name}, {"form", x.form}, {"promised", finite(x.gain)}, {"masked", finite(x.masked)}, {"what", x.what}});
+  return out;
+}
+
+Json rules_json(const std::vector<RuleText>& rules) {
+  Json out = Json::array();
+  for (const RuleText& x : rules) out.push_back({{"rule", x.text}, {"value", x.value}});
+  return out;
+}
+
+Json detection_json(const Detection& d) {
+  return {{"statistic", finite(d.statistic)}, {"score", finite(d.score)}, {"p", d.p}, {"chance", d.chance}, {"repetitions", d.repetitions}, {"excess", finite(d.excess)},
+          {"trial", d.trial}, {"from", finite(d.from)}, {"to", finite(d.to)}};
+}
+
+Json confirmation_json(const Confirmation& c) {
+  Json values = Json::object();
+  for (const NamedEffect& e : c.values) values[info(e.effect).name] = json_of(e.parameters);
+  return {{"solver", c.solver}, {"ran", c.ran}, {"holds", c.holds}, {"difference", finite(c.difference)}, {"mesh", finite(c.mesh)}, {"evidence", finite(-c.evidence)},
+          {"share", finite(c.share)}, {"parameters", values}};
+}
+
+Json numerics_json(const Numerics& n) {
+  Json steps = Json::object();
+  for (const Sensitivity& v : n.sensitivities) steps[v.parameter] = {{"disagreement", finite(v.disagreement)}, {"step", v.step}};
+  return {{"time_halved", finite(n.time)}, {"mesh_halved", finite(n.mesh)}, {"sensitivities", steps}};
+}
+
+Json hardware_json(const Dataset& d, const Result& r) {
+  Json out = Json::array();
+  for (const auto& checks : {check_hardware(d), check_units(d, r.baseline)})
+    for (const HardwareCheck& h : checks) out.push_back({{"check", h.what}, {"where", h.where}, {"found", h.found}});
+  return out;
+}
+
+std::string hash_text(const Dataset& d) {
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(d.hash));
+  return hash;
+}
+
+/// What the verdict rests on, after what it says.
+void add_grounds(const Dataset& d, const Result& r, Json& j) {
+  if (!r.shape.empty()) j["shape"] = json_of(r.shape);
+  if (!r.residual_terms.empty()) j["residual_terms"] = json_of(r.residual_terms);
+  j["tried"] = tried_json(r.tried);
+  j["screened"] = screened_json(r.screened);
+  j["rules"] = rules_json(rules_of(d, r));
+  if (r.verdict == "ambiguous") j["ambiguity"] = {{"correlation", finite(r.correlation)}, {"masked", finite(r.masked)}};
+  if (r.detection) j["detection"] = detection_json(*r.detection);
+  if (r.confirmation) j["confirmation"] = confirmation_json(*r.confirmation);
+  j["numerics"] = numerics_json(r.numerics);
+  j["hardware"] = hardware_json(d, r);
+  j["notices"] = d.notices;
+  j["dataset_hash"] = hash_text(d);
+}
+
 }  // namespace
 
 std::vector<RuleText> rules_of(const Dataset& d, const Result& r) { return d.rig == Rig::tip_hold ? listed(HoldRules{}, r.rules) : listed(r.rules); }
 
 Json report_json(const Dataset& d, const Result& r) {
+  const bool effect = r.verdict == "effect";
   Json j = {{"format", "filum-reconcile/1"}, {"dataset", d.name}, {"rig", info(d.rig).name}, {"verdict", r.verdict}};
   Json effects = Json::array();
-  if (r.verdict == "effect")
+  if (effect)
     for (const NamedEffect& e : r.effects) effects.push_back({{"name", info(e.effect).name}, {"form", e.form}, {"parameters", json_of(e.parameters)}});
   j["effects"] = effects;
   j["baseline"] = json_of(r.baseline.empty() ? r.baseline_alone : r.baseline);
@@ -76,56 +160,15 @@ Json report_json(const Dataset& d, const Result& r) {
   j["gap"] = {{"noise", noise_json(d, r)},
               {"fit", {{"before", finite(r.fit.before)}, {"after", finite(r.fit.after)}}},
               {"held_out", {{"before", finite(r.held_out.before)}, {"after", finite(r.held_out.after)}, {"how", r.held_out_how}}}};
-  Json where = Json::array();
-  for (std::size_t i = 0; i < r.where.size() && i < 12; ++i)
-    where.push_back({{"trial", r.where[i].trial}, {"phase", r.where[i].phase}, {"range", r.where[i].range}, {"share", finite(r.where[i].share)}});
-  j["where"] = where;
-  Json by = Json::array();
-  for (const Share& w : r.where_by) by.push_back({{"axis", w.axis}, {"bin", w.bin}, {"share", finite(w.share)}, {"deviations", finite(w.deviations)}});
-  j["where_by"] = by;
-  Json hidden = Json::array();
-  for (const NotTestable& n : r.not_testable) hidden.push_back({{"effect", info(n.effect).name}, {"why", n.why}, {"needs", n.needs}});
-  j["not_testable"] = hidden;
+  j["where"] = where_json(r.where);
+  j["where_by"] = where_by_json(r.where_by);
+  j["not_testable"] = not_testable_json(r.not_testable);
   j["partial"] = r.partial;
-  j["next_experiment"] = nullptr;
-  if (r.next) j["next_experiment"] = {{"protocol", r.next->protocol}, {"why", r.next->why}, {"chance", r.next->chance}};
-  j["model_written"] = nullptr;
-  if (r.verdict == "effect") j["model_written"] = "model.yaml";
+  j["next_experiment"] = r.next ? Json{{"protocol", r.next->protocol}, {"why", r.next->why}, {"chance", r.next->chance}} : Json(nullptr);
+  j["model_written"] = effect ? Json("model.yaml") : Json(nullptr);
   j["seconds"] = r.seconds;
   j["sentence"] = r.sentence;
-  if (!r.shape.empty()) j["shape"] = json_of(r.shape);
-  if (!r.residual_terms.empty()) j["residual_terms"] = json_of(r.residual_terms);
-  Json tried = Json::array();
-  for (const Tried& t : r.tried) tried.push_back({{"effects", names(t.effects)}, {"form", t.form}, {"evidence", finite(-t.evidence)}, {"explained", finite(t.explained)}, {"why", t.why}});
-  j["tried"] = tried;
-  Json screened = Json::array();
-  for (const Screened& x : r.screened) screened.push_back({{"effect", info(x.effect).name}, {"form", x.form}, {"promised", finite(x.gain)}, {"masked", finite(x.masked)}, {"what", x.what}});
-  j["screened"] = screened;
-  Json rules = Json::array();
-  for (const RuleText& x : rules_of(d, r)) rules.push_back({{"rule", x.text}, {"value", x.value}});
-  j["rules"] = rules;
-  if (r.verdict == "ambiguous") j["ambiguity"] = {{"correlation", finite(r.correlation)}, {"masked", finite(r.masked)}};
-  if (r.detection)
-    j["detection"] = {{"statistic", finite(r.detection->statistic)}, {"score", finite(r.detection->score)}, {"p", r.detection->p}, {"chance", r.detection->chance}, {"repetitions", r.detection->repetitions}, {"excess", finite(r.detection->excess)},
-                      {"trial", r.detection->trial}, {"from", finite(r.detection->from)}, {"to", finite(r.detection->to)}};
-  if (r.confirmation) {
-    const Confirmation& c = *r.confirmation;
-    Json values = Json::object();
-    for (const NamedEffect& e : c.values) values[info(e.effect).name] = json_of(e.parameters);
-    j["confirmation"] = {{"solver", c.solver}, {"ran", c.ran}, {"holds", c.holds}, {"difference", finite(c.difference)}, {"mesh", finite(c.mesh)}, {"evidence", finite(-c.evidence)},
-                         {"share", finite(c.share)}, {"parameters", values}};
-  }
-  Json steps = Json::object();
-  for (const Sensitivity& v : r.numerics.sensitivities) steps[v.parameter] = {{"disagreement", finite(v.disagreement)}, {"step", v.step}};
-  j["numerics"] = {{"time_halved", finite(r.numerics.time)}, {"mesh_halved", finite(r.numerics.mesh)}, {"sensitivities", steps}};
-  Json hardware = Json::array();
-  for (const auto& checks : {check_hardware(d), check_units(d, r.baseline)})
-    for (const HardwareCheck& h : checks) hardware.push_back({{"check", h.what}, {"where", h.where}, {"found", h.found}});
-  j["hardware"] = hardware;
-  j["notices"] = d.notices;
-  char hash[20];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(d.hash));
-  j["dataset_hash"] = hash;
+  add_grounds(d, r, j);
   return j;
 }
 
@@ -165,8 +208,6 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
     std::snprintf(text, sizeof text, "{ value: \"%.6g%s\", low: \"%.6g%s\", high: \"%.6g%s\" }", e.value, unit.c_str(), e.low, unit.c_str(), e.high, unit.c_str());
     s << indent << e.name << ": " << text << "\n";
   };
-  char hash[20];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(d.hash));
   s << "# Baseline with what the measurements showed to be missing. Values with their 95 % intervals.\n"
     << "format: filum-model/1\ntitle: \"" << d.name << "\"\nrig: " << info(d.rig).name << "\nbaseline_model: " << d.model << "\nbaseline:\n";
   for (const Estimate& e : r.baseline) value(e, "  ");
@@ -194,7 +235,7 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
     std::snprintf(text, sizeof text, "  %s: [\"%.6g%s\", \"%.6g%s\"]\n", c.name.c_str(), low, unit.c_str(), high, unit.c_str());
     s << text;
   }
-  s << "source: { dataset: \"" << d.name << "\", hash: \"" << hash << "\", program: \"" << program << "\" }\n";
+  s << "source: { dataset: \"" << d.name << "\", hash: \"" << hash_text(d) << "\", program: \"" << program << "\" }\n";
   return s.str();
 }
 

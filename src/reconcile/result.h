@@ -141,7 +141,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
 std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& noise);
 /// The same axis by axis: trial, output, phase, strain (or the input), rate, cycle, band of frequency. Axes on which there is one bin only are left out.
 std::vector<Share> localise_by(const RigModel& model, const Fit& base, const Noise& noise);
-Gap gap_of(const RigModel& model, const Noise& noise, const Fit& before, const Fit& after, const std::vector<bool>& trials);
+Gap gap_of(const Noise& noise, const Fit& before, const Fit& after);
 std::vector<Term> describe(const RigModel& model, const Fit& base);
 /// `evidence`: BIC of each rival (less is better); `tie`: by how much one must lead.
 std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::vector<const Fit*>& rivals, const std::vector<double>& evidence, double dispersion, double tie);

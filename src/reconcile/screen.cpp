@@ -152,6 +152,12 @@ double Screen::correlation(const Form& a, const std::vector<double>& pa, const F
 
 namespace {
 
+/// Why an effect is not testable; no words: it is.
+struct Reason {
+  std::string why;
+  bool hidden = false;  // NotTestable
+};
+
 /// Reasons that follow from the list of trials.
 std::string missing_condition(const Dataset& d, Effect e) {
   std::set<std::string> modes, sides;
@@ -173,18 +179,26 @@ std::string missing_condition(const Dataset& d, Effect e) {
   }
 }
 
-std::string clock_condition(const Dataset& d, Effect e) {
+Reason clock_condition(const Dataset& d, Effect e) {
   double rate = 1e300, span = 0.0;
   for (const Trial& t : d.trials) {
-    if (!t.clocked) return "no time channel";
+    if (!t.clocked) return {"no time channel"};
     const double length = t.time[t.samples() - 1] - t.time[0];
     rate = std::min(rate, (t.samples() - 1) / length);
     span = std::max(span, length);
   }
-  if (e == Effect::pulsation && (rate < 1.0 || span < 3.0)) return "records too short or sampled too slowly for a heart beat";
-  if (e == Effect::physiological_tremor && rate < 17.0) return "sampled more slowly than twice 8 Hz";
-  if (e == Effect::mains_hum && (rate < 1.5 || span * rate < 24.0)) return "too few samples: sampled so slowly that 50 Hz folds onto anything";
-  return "";
+  if (e == Effect::pulsation && (rate < 1.0 || span < 3.0)) return {"records too short or sampled too slowly for a heart beat", true};
+  if (e == Effect::physiological_tremor && rate < 17.0) return {"sampled more slowly than twice 8 Hz", true};
+  if (e == Effect::mains_hum && (rate < 1.5 || span * rate < 24.0)) return {"too few samples: sampled so slowly that 50 Hz folds onto anything", true};
+  return {};
+}
+
+/// Reasons that follow from the clearest signature an effect could leave in these records; `seen`: its squared signal to noise.
+Reason signature_condition(const Score* clearest, double seen, double masked, double testable) {
+  if (clearest == nullptr) return {"these trials never bring it about"};
+  if (clearest->imitated > masked) return {"a change of the baseline's own parameters imitates it (masked to " + std::to_string(static_cast<int>(std::floor(1000 * clearest->imitated)) / 10) + " %)", true};
+  if (seen < testable) return {"even a strong effect would change these records by less than their noise", true};
+  return {};
 }
 
 }  // namespace
@@ -215,17 +229,16 @@ std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& fo
   }
   std::vector<NotTestable> out;
   for (const Effect e : effects_of(d.rig)) {
-    std::string why = missing_condition(d, e);
+    Reason reason{missing_condition(d, e)};
     const bool line = lines.count(e) > 0 || e == Effect::physiological_tremor;
     if (line || e == Effect::sensor_lag || e == Effect::sensor_drift)
-      if (why.empty()) why = clock_condition(d, e);
-    if (why.empty() && !line) {
+      if (reason.why.empty()) reason = clock_condition(d, e);
+    if (reason.why.empty() && !line) {
       const auto at = best.find(e);
-      if (at == best.end()) why = "these trials never bring it about";
-      else if (at->second.imitated > masked) why = "a change of the baseline's own parameters imitates it (masked to " + std::to_string(static_cast<int>(std::floor(1000 * at->second.imitated)) / 10) + " %)";
-      else if (at->second.seen * clearer < testable) why = "even a strong effect would change these records by less than their noise";
+      const Score* clearest = at == best.end() ? nullptr : &at->second;
+      reason = signature_condition(clearest, clearest == nullptr ? 0.0 : clearest->seen * clearer, masked, testable);
     }
-    if (!why.empty()) out.push_back({e, why, info(e).shows});
+    if (!reason.why.empty()) out.push_back({e, reason.why, info(e).shows, reason.hidden});
   }
   return out;
 }

@@ -61,6 +61,7 @@ class Screen {
 struct NotTestable {
   Effect effect;
   std::string why, needs;
+  bool hidden = false;  // by the inputs altogether: it cannot be named. Else a condition is lacking, and it stays as a rival
 };
 
 /// From the inputs alone: effects of the rig that these trials could not show. `full_scale_noise` is 1 % of full scale.
