@@ -78,32 +78,6 @@ Points braid_knot_curve(int n, double h, double loop) {
   return even_and_smooth(curve, 2.0 * h);
 }
 
-BraidKnot::BraidKnot(int n, double friction, double loop) : probe(braid_material(), braid_knot_curve(n, kRadius, loop)) {
-  const int last = probe.state.n - 1;
-  probe.rod.self_contact = true;
-  probe.rod.contact_material.stiffness = 200.0;
-  probe.rod.contact_material.friction = friction;
-  probe.rod.contact_material.presliding = 0.05 * kRadius;
-  probe.options = RodStepOptions();
-  probe.options.gravity.setZero();
-  probe.options.force_tolerance = 1e-6;
-  for (int i : {0, 1, last - 1, last}) probe.hold(i);
-  direction = (probe.state.x.col(last) - probe.state.x.col(0)).normalized();
-}
-
-RodStepSummary BraidKnot::pull(double speed) {
-  const int last = probe.state.n - 1;
-  const Vec3 step = speed * probe.options.dt * direction;
-  for (int i : {0, 1}) probe.rod.boundary.target.col(i).head<3>() -= step;
-  for (int i : {last - 1, last}) probe.rod.boundary.target.col(i).head<3>() += step;
-  return probe.rod.step(probe.state, probe.memory, probe.options);
-}
-
-double BraidKnot::shortening() const {
-  const int n = probe.state.n;
-  return probe.state.rest_length.head(n - 1).sum() - (probe.state.x.col(n - 1) - probe.state.x.col(0)).norm();
-}
-
-double BraidKnot::tension() const { return edge_tension(probe.rod.material, probe.state, 2); }
+BraidKnot::BraidKnot(int n, double friction, double loop) : DrawnKnot(braid_material(), braid_knot_curve(n, kRadius, loop), friction) {}
 
 }  // namespace filum

@@ -2,7 +2,7 @@
 // Overhand knots of unknotting number n (2n + 1 crossings) drawn tight: two strands in a braid of 2n + 1 half-turns, a loop and two
 // tails along the braid, as in Jawed, Dieleman, Audoly & Reis (Phys. Rev. Lett. 115:118302, 2015). One segment is one diameter long.
 
-#include "evidence/rod_probe.h"
+#include "evidence/drawn_knot.h"
 
 namespace filum {
 
@@ -10,16 +10,8 @@ namespace filum {
 /// the height of the loop [m].
 Points braid_knot_curve(int n, double h, double loop = 0.045);
 
-struct BraidKnot {
+struct BraidKnot : DrawnKnot {
   BraidKnot(int n, double friction, double loop = 0.045);
-
-  /// One step; each end moves by speed * dt.
-  RodStepSummary pull(double speed);
-  double shortening() const;  // [m], length less distance of the ends
-  double tension() const;     // [N], of the clamped tail
-
-  RodProbe probe;
-  Vec3 direction;  // unit, from the first end to the last
 };
 
 }  // namespace filum

@@ -33,34 +33,6 @@ Points overhand_curve(int n, double length) {
   return p * (length / total);
 }
 
-PulledKnot::PulledKnot(int n, double friction, double dt) : probe(knot_material(), overhand_curve(n, 1.0)) {
-  probe.rod.self_contact = true;
-  probe.rod.contact_material.stiffness = 200.0;
-  probe.rod.contact_material.friction = friction;
-  probe.rod.contact_material.presliding = 0.05 * probe.rod.material.radius;
-  probe.options = RodStepOptions();
-  probe.options.dt = dt;
-  probe.options.gravity.setZero();
-  probe.options.force_tolerance = 1e-6;
-  for (int i : {0, 1, n - 2, n - 1}) probe.hold(i);
-  direction = (probe.state.x.col(n - 1) - probe.state.x.col(0)).normalized();
-}
-
-RodStepSummary PulledKnot::pull(double speed) {
-  const int n = probe.state.n;
-  const Vec3 step = speed * probe.options.dt * direction;
-  for (int i : {0, 1}) probe.rod.boundary.target.col(i).head<3>() -= step;
-  for (int i : {n - 2, n - 1}) probe.rod.boundary.target.col(i).head<3>() += step;
-  return probe.rod.step(probe.state, probe.memory, probe.options);
-}
-
-double PulledKnot::shortening() const {
-  const int n = probe.state.n;
-  return probe.state.rest_length.head(n - 1).sum() - (probe.state.x.col(n - 1) - probe.state.x.col(0)).norm();
-}
-
-double PulledKnot::tension() const {
-  return edge_tension(probe.rod.material, probe.state, 2);
-}
+PulledKnot::PulledKnot(int n, double friction, double dt) : DrawnKnot(knot_material(), overhand_curve(n, 1.0), friction, dt) {}
 
 }  // namespace filum

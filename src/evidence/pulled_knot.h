@@ -1,7 +1,7 @@
 #pragma once
 // An open overhand knot drawn tight by its ends, which move apart along the line between them.
 
-#include "evidence/rod_probe.h"
+#include "evidence/drawn_knot.h"
 
 namespace filum {
 
@@ -10,16 +10,8 @@ namespace filum {
 Points overhand_curve(int n, double length);
 
 /// The rod of Tong et al. (imc-der, arXiv 2205.10309): 1 m, radius 1.6 mm, 0.18 MPa, Poisson 0.5, 1180 kg/m3.
-struct PulledKnot {
+struct PulledKnot : DrawnKnot {
   PulledKnot(int n, double friction, double dt);
-
-  /// One step; each end moves by speed * dt.
-  RodStepSummary pull(double speed);
-  double shortening() const;  // [m], length less distance of the ends
-  double tension() const;     // [N], of the clamped tail
-
-  RodProbe probe;
-  Vec3 direction;  // unit, from the first end to the last
 };
 
 }  // namespace filum

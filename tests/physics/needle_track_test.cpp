@@ -122,32 +122,46 @@ int follow_nodes(int i, const Vec3& anchor, const std::vector<Vec3>& needle, dou
   return i;
 }
 
+/// A needle by itself over a card, where it is put.
+struct LoneNeedle {
+  LoneNeedle() : wall(make_card(shape), {{"card", shape.thickness, WallLaw::hooke(1e6, 0.3)}}, {}), w(wall.first_state()), tracks(plain_track(5e-3, 1e-3, 5.0), needle, wall) {
+    wall.refit(w);
+    on_needle.reserve(8);
+  }
+  /// Its point so far above the card [m], looking along `along`.
+  Pose over(double height, const Vec3& along) const {
+    Pose X_WN;
+    X_WN.q = Quat::FromTwoVectors(needle.tangent(needle.length()), along);
+    X_WN.p = Vec3(0.0, -0.3e-3, 0.5 * shape.thickness + height) - X_WN.q * needle.point(needle.length());
+    return X_WN;
+  }
+  void step(TrackState& s, const Pose& X_WN) {
+    tracks.hold(wall, w, s, X_WN, nullptr, on_needle, on_thread);
+    tracks.follow(wall, w, s, X_WN, nullptr, 2e-3, on_needle, on_thread, events, 8);
+  }
+  CardShape shape;
+  VesselWall wall;
+  WallState w;
+  NeedleShape needle;
+  NeedleTracks tracks;
+  std::vector<RodTether> on_needle, on_thread;
+  TrackEvent events[8];
+};
+
 /// A card that is lifted towards a needle standing still, by a third of its thickness and in steps of 4 um: told by the needle's own motion the
 /// point would stand within the tissue and be none the wiser.
 TEST(NeedleTrack, WallThatComesUponAPointThatStandsStillMeetsIt) {
-  CardShape shape;
-  VesselWall wall(make_card(shape), {{"card", shape.thickness, WallLaw::hooke(1e6, 0.3)}}, {});
-  WallState w = wall.first_state();
-  wall.refit(w);
-  NeedleShape needle;
-  NeedleTracks tracks(plain_track(5e-3, 1e-3, 5.0), needle, wall);
-  const double L = needle.length();
-  Pose X_WN;
-  X_WN.q = Quat::FromTwoVectors(needle.tangent(L), -Vec3::UnitZ());
-  X_WN.p = Vec3(0.0, -0.3e-3, 0.5 * shape.thickness + 10e-6) - X_WN.q * needle.point(L);
+  LoneNeedle n;
+  const Pose X_WN = n.over(10e-6, -Vec3::UnitZ());
   TrackState s;
-  s.point_before = X_WN * needle.point(L);
-  std::vector<RodTether> on_needle, on_thread;
-  on_needle.reserve(8);
-  TrackEvent events[8];
+  s.point_before = X_WN * n.needle.point(n.needle.length());
   int steps = 0;
-  for (; s.point.kind == PointContact::Kind::none && steps * 4e-6 < shape.thickness / 3.0; ++steps) {
-    tracks.hold(wall, w, s, X_WN, nullptr, on_needle, on_thread);
-    tracks.follow(wall, w, s, X_WN, nullptr, 2e-3, on_needle, on_thread, events, 8);
-    tracks.mark_point(wall, w, s);
-    w.x.row(2).array() += 4e-6;
-    wall.refit(w);
-    tracks.carry_point(wall, w, s);
+  for (; s.point.kind == PointContact::Kind::none && steps * 4e-6 < n.shape.thickness / 3.0; ++steps) {
+    n.step(s, X_WN);
+    n.tracks.mark_point(n.wall, n.w, s);
+    n.w.x.row(2).array() += 4e-6;
+    n.wall.refit(n.w);
+    n.tracks.carry_point(n.wall, n.w, s);
   }
   EXPECT_EQ(s.point.kind, PointContact::Kind::outside);
   EXPECT_LE(steps, 4) << "10 um away";
@@ -155,24 +169,12 @@ TEST(NeedleTrack, WallThatComesUponAPointThatStandsStillMeetsIt) {
 
 /// Where a face tilts, a point that rests on it can be carried past it by rounding: it is then within the tissue without having crossed anything.
 TEST(NeedleTrack, PointCarriedPastTheSurfaceIsMetAllTheSame) {
-  CardShape shape;
-  VesselWall wall(make_card(shape), {{"card", shape.thickness, WallLaw::hooke(1e6, 0.3)}}, {});
-  WallState w = wall.first_state();
-  wall.refit(w);
-  NeedleShape needle;
-  NeedleTracks tracks(plain_track(5e-3, 1e-3, 5.0), needle, wall);
-  const double L = needle.length();
-  std::vector<RodTether> on_needle, on_thread;
-  on_needle.reserve(8);
-  TrackEvent events[8];
+  LoneNeedle n;
   const auto meets = [&](double before, double now, const Vec3& along) {  // heights of the point over the card [m]
-    Pose X_WN;
-    X_WN.q = Quat::FromTwoVectors(needle.tangent(L), along);
-    X_WN.p = Vec3(0.0, -0.3e-3, 0.5 * shape.thickness + now) - X_WN.q * needle.point(L);
+    const Pose X_WN = n.over(now, along);
     TrackState s;
-    s.point_before = X_WN * needle.point(L) + Vec3(0.0, 0.0, before - now);
-    tracks.hold(wall, w, s, X_WN, nullptr, on_needle, on_thread);
-    tracks.follow(wall, w, s, X_WN, nullptr, 2e-3, on_needle, on_thread, events, 8);
+    s.point_before = X_WN * n.needle.point(n.needle.length()) + Vec3(0.0, 0.0, before - now);
+    n.step(s, X_WN);
     return s.point.kind == PointContact::Kind::outside;
   };
   EXPECT_TRUE(meets(-0.1e-6, -2e-6, -Vec3::UnitZ()));
