@@ -62,6 +62,22 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
     expect(opened.trouble).toEqual([]);
   });
 
+  it("takes a folder of measurements that is chosen in the browser", { timeout: 300_000 }, async () => {
+    const mine = join(data, "mine"), kept = join(data, "kept");
+    writeBlock(join(mine, "block"), 400);
+    mkdirSync(kept);
+    trainer = await startTrainer("--datasets", kept);
+    opened = await openPage(`${trainer.address}#/laboratory`);
+    const { page } = opened;
+    await page.setInputFiles("#measurements", join(mine, "block"));
+    await page.waitForSelector("[data-start=block]");
+    for (const name of ["experiment.yaml", "a.csv", "d.csv"]) expect(readFileSync(join(kept, "block", name), "utf8")).toBe(readFileSync(join(mine, "block", name), "utf8"));
+    await page.setInputFiles("#measurements", join(mine, "block"));
+    await until(() => page.textContent(".upload [role=status]"), (text) => (text ?? "").includes("which is there already"), "a second one of that name is refused");
+    expect(readdirSync(kept)).toEqual(["block"]);
+    expect(opened.trouble).toEqual([]);
+  });
+
   it("analyses a recorded session on its result page, and studies all on a page of their own", { timeout: 600_000 }, async () => {
     trainer = await startTrainer("--datasets", data);
     opened = await openPage(trainer.address);

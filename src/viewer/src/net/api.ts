@@ -7,13 +7,17 @@ async function get<T>(path: string): Promise<T> {
   return (await answer.json()) as T;
 }
 
-async function post<T>(path: string, body: object): Promise<T> {
-  const answer = await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+async function change<T>(path: string, asked: RequestInit): Promise<T> {
+  const answer = await fetch(path, asked);
   if (!answer.ok) throw new Error(`the trainer answered ${answer.status} to ${path}`);
   const said = (await answer.json()) as T & { refused?: string };
   if (said.refused) throw new Error(said.refused);
   return said;
 }
+
+export const post = <T>(path: string, body: object): Promise<T> => change(path, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body) });
+/// A part of a file.
+export const put = <T>(path: string, body: Blob, signal: AbortSignal): Promise<T> => change(path, { method: "PUT", headers: { "content-type": "application/octet-stream" }, body, signal });
 
 export interface ReconcileStatus {
   folder: string;

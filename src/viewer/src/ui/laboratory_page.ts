@@ -3,6 +3,7 @@
 import type { App, Page } from "../app";
 import { calibration, reconcile, type ReconcileStatus } from "../net/api";
 import { CameraCalibration } from "./camera_calibration";
+import { DatasetUpload } from "./dataset_upload";
 import { h, setText } from "./dom";
 import { ForcepsCalibration } from "./forceps_calibration";
 
@@ -17,6 +18,7 @@ export class LaboratoryPage implements Page {
   private readonly reconciling = h("section", { class: "panel reconcile", "aria-labelledby": "reconcile-title" });
   private readonly forceps = new ForcepsCalibration();
   private readonly camera = new CameraCalibration();
+  private readonly upload = new DatasetUpload();
   private readonly progress = h("progress", { max: 1, value: 0, "aria-label": "Progress of reconcile" });
   private readonly said = h("p", { role: "status", "aria-live": "polite" }, "");
   private readonly cancel = h("button", { class: "cancel", onclick: () => void this.changed(() => reconcile.cancel()) }, "Cancel");
@@ -29,13 +31,13 @@ export class LaboratoryPage implements Page {
   constructor(_app: App) {
     this.reconciling.append(h("h2", { id: "reconcile-title" }, "Measurements against the model"),
       h("p", { class: "quiet" }, "Finds where a measured experiment and its model disagree, and names the missing effect, or says that none can be named."),
-      this.datasets, h("div", { class: "job" }, this.progress, this.cancel), this.said, this.report);
+      this.datasets, this.upload.element, h("div", { class: "job" }, this.progress, this.cancel), this.said, this.report);
     this.element.append(h("h1", {}, "Laboratory"), this.reconciling, this.forceps.element, this.camera.element);
     this.progress.hidden = this.cancel.hidden = true;
     void this.look();
   }
 
-  dispose(): void { this.gone = true; window.clearTimeout(this.timer); this.camera.dispose(); }
+  dispose(): void { this.gone = true; window.clearTimeout(this.timer); this.camera.dispose(); this.upload.dispose(); }
 
   private async look(): Promise<void> {
     try {
@@ -63,7 +65,7 @@ export class LaboratoryPage implements Page {
     this.listed = key;
     const focus = (document.activeElement as HTMLElement | null)?.dataset.start;
     this.datasets.replaceChildren(status.datasets.length > 0 ? this.table(status, running)
-      : h("p", {}, "There are no measurements yet: put folders with an experiment.yaml into ", h("code", {}, status.folder), "."));
+      : h("p", {}, "There are no measurements yet: add a folder below, or put folders with an experiment.yaml into ", h("code", {}, status.folder), "."));
     if (focus) this.datasets.querySelector<HTMLElement>(`[data-start="${CSS.escape(focus)}"]`)?.focus();
   }
 
