@@ -16,6 +16,10 @@ constexpr int kLoadsFall = 6;       // iterations of a step in which friction's 
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
 constexpr double kLeastReach = 0.05;    // [radii], of the search for near pairs
 constexpr double kMostExtraInertia = 1e6;  // [1], times the nodes' own
+constexpr double kLateGrowth = 1.6;         // [1], of the tolerance from one late iteration to the next
+constexpr double kMostLate = 30.0;          // [1], times the tolerance
+constexpr double kLeastLate = 3e-6;         // [N]
+constexpr double kLargestLate = 1e-4;       // [N], what a step may be off by before it is called trouble
 constexpr double kHeld = 1e24;  // added to the diagonal of held coordinates: their correction vanishes to rounding
 
 double node_span(const RodState& s, int i) noexcept {
@@ -35,6 +39,14 @@ double largest_move(const Eigen::Matrix4Xd& move, int n) noexcept {
 }
 
 }  // namespace
+
+double late_tolerance(const RodStepOptions& o, int iterations, double scale) noexcept {
+  const double strict = std::max(o.force_tolerance, o.relative_tolerance * scale);
+  const int late = iterations - o.strict_iterations + 1;
+  if (late <= 0) return strict;
+  const double grown = strict * std::min(kMostLate, std::pow(kLateGrowth, late));
+  return std::max(strict, std::clamp(grown, kLeastLate, kLargestLate));
+}
 
 RodBoundary::RodBoundary(int capacity)
     : load(Eigen::Matrix4Xd::Zero(4, capacity)),
@@ -75,7 +87,7 @@ RodStepSummary ImplicitRod::step(RodState& s, RodMemory& memory, const RodStepOp
     summary.residual = gradient_.leftCols(s.n).topRows<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     const double moment = gradient_.leftCols(s.n).row(3).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / material.radius;
     if (!std::isfinite(summary.residual + moment)) break;
-    summary.converged = summary.arrived && std::max(summary.residual, 0.1 * moment) < std::max(o.force_tolerance, o.relative_tolerance * force_scale(s));
+    summary.converged = summary.arrived && std::max(summary.residual, 0.1 * moment) < late_tolerance(o, summary.iterations, force_scale(s));
     const int most = summary.arrived ? o.max_iterations : kMoreToArrive * o.max_iterations;
     if (summary.converged || summary.iterations >= most) break;
     if (!newton_step(s, memory, o)) break;

@@ -229,11 +229,7 @@ void NeedleTracks::carry_point(const VesselWall& wall, const WallState& w, Track
 }
 
 void NeedleTracks::find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& before, const Vec3& tip, const Vec3& along) noexcept {
-  WallCrossing c = wall.crossing(w, before, tip);
-  if (!c.found) {  // a face that tilted past the point while it was carried along is not crossed any more
-    c = wall.nearest(w, tip, kBeside);
-    c.found = c.found && c.fraction < 0.0;
-  }
+  const WallCrossing c = wall.crossing(w, before, tip);
   if (!c.found || (tip - before).dot(c.normal) >= 0.0 || along.dot(c.normal) >= 0.0) return;
   s.point.kind = PointContact::Kind::outside;
   s.point.at = c.point;

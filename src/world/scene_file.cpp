@@ -181,6 +181,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   d.has_field = scene.has("field");
   if (d.has_field) d.field_W = scene.vec3("field", "mm");
   m->step.max_iterations = scene.integer("newton_iterations", 1, 100);
+  m->step.strict_iterations = 6;
   m->step.longest_move = 16.0 * m->thread.radius;
   scene.finish();
   return m;

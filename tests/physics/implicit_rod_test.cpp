@@ -250,5 +250,21 @@ TEST(ImplicitRod, StepAllocatesNothing) {
   EXPECT_GT(allocations, before) << "the counter works";
 }
 
+TEST(LateTolerance, IsStrictAtFirstAndGrowsUpToItsLimit) {
+  RodStepOptions o;
+  o.force_tolerance = 1e-10;
+  o.relative_tolerance = 1e-3;
+  o.strict_iterations = 6;
+  EXPECT_DOUBLE_EQ(late_tolerance(o, 5, 10e-3), 10e-6);
+  EXPECT_NEAR(late_tolerance(o, 6, 10e-3), 16e-6, 1e-12);
+  EXPECT_NEAR(late_tolerance(o, 7, 10e-3), 25.6e-6, 1e-12);
+  EXPECT_NEAR(late_tolerance(o, 19, 2e-3), 60e-6, 1e-12) << "3 % of the largest force";
+  EXPECT_NEAR(late_tolerance(o, 19, 10e-3), 100e-6, 1e-12);
+  EXPECT_NEAR(late_tolerance(o, 19, 0.5), 500e-6, 1e-12) << "never stricter than at first";
+  EXPECT_DOUBLE_EQ(late_tolerance(o, 19, 0.0), 3e-6);
+  EXPECT_DOUBLE_EQ(late_tolerance(o, 5, 0.0), 1e-10) << "a free thread falls as it did";
+  EXPECT_DOUBLE_EQ(late_tolerance(RodStepOptions(), 19, 10e-3), 10e-6) << "not in closed-form problems";
+}
+
 }  // namespace
 }  // namespace filum
