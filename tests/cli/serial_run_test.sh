@@ -1,18 +1,22 @@
 #!/bin/bash
 # The main job on real input: frames of hand pose and grip through a pseudo terminal (`--input serial:PATH`), recorded; then the recording's
 # device samples through the replay device, and its steps again bit for bit. Usage: serial_run_test.sh FILUM FEEDER ROOT
-# A hand takes the thread and lifts it. With FILUM_WHOLE_SERIAL=1 the task's whole demonstration is played instead, and must end in a square
-# knot: for an idle machine only, since hands on a wire do not wait for a trainer that falls behind.
+# A hand takes the thread and lifts it. With FILUM_WHOLE_SERIAL=1 the poses of a whole run of the demonstration are sent instead (a wire has no eyes to
+# look for the thread with), and must end in a square knot: for an idle machine only, since hands on a wire do not wait for a trainer that falls behind.
 filum=$1 feeder=$2 root=$3
 work=$(mktemp -d)
 feeding=
 trap '[ -z "$feeding" ] || kill "$feeding" 2>/dev/null; rm -rf "$work"' EXIT
 fail() { echo "serial_run_test: $*"; cat "$work"/*.err 2>/dev/null; exit 1; }
 
-script="$root/curricula/knot-square/demonstration.yaml"
+here=$(dirname "$0")
+script="$work/take.yaml"
 whole=${FILUM_WHOLE_SERIAL:-0}
-if [ "$whole" -eq 0 ]; then
-  script="$work/take.yaml"
+if [ "$whole" -eq 1 ]; then
+  "$filum" run knot-square --record "$work/seen" >"$work/seen.out" 2>"$work/seen.err" || fail "the demonstration exited with $?"
+  "$filum" export "$work/seen" --format csv --out "$work/seen.csv" >/dev/null 2>"$work/seen.err" || fail "its export"
+  node "$here/poses_of_run.mjs" "$work/seen.csv/samples.csv" >"$script" || fail "its poses"
+else
   cat >"$script" <<'YAML'
 format: filum-demonstration/1
 title: Take the thread and lift it
@@ -30,7 +34,7 @@ tools:
 YAML
 fi
 longest=3
-[ $whole -eq 0 ] || longest=600
+[ "$whole" -eq 0 ] || longest=60
 
 # field FILE NAME: a value of the JSON document.
 field() { node -e 'const d = JSON.parse(require("fs").readFileSync(process.argv[1])); console.log(process.argv[2].split(".").reduce((x, k) => x?.[k], d));' "$1" "$2"; }
