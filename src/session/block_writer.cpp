@@ -81,6 +81,14 @@ struct BlockWriter::Impl {
   } ids;
 };
 
+/// Leaves no file behind. Called from a handler.
+void BlockWriter::give_up(const std::string& file, const std::exception& error) {
+  impl_.reset();
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  throw InputError(file, "recording", database::reason(error), "a folder that can be written, with space left");
+}
+
 BlockWriter::BlockWriter(const std::string& file, const RecordingMeta& meta,
                          const std::vector<SourceFile>& sources) {
   try {
@@ -99,14 +107,16 @@ BlockWriter::BlockWriter(const std::string& file, const RecordingMeta& meta,
     sql << "PRAGMA synchronous = NORMAL";
     // A checkpoint syncs the disk, which may take longer than the 100 ms that may be lost; finish() does it.
     database::pragma(sql, "wal_autocheckpoint = 0");
-    // The first write into a fresh log syncs its header; here it delays no record.
+  } catch (const std::exception& error) {
+    give_up(file, error);
+  }
+}
+
+void BlockWriter::begin() {
+  try {
     impl_->put_text("meta", "log", "begun");
   } catch (const std::exception& error) {
-    impl_.reset();
-    std::error_code ignored;
-    std::filesystem::remove(file, ignored);
-    throw InputError(file, "recording", database::reason(error),
-                     "a folder that can be written, with space left");
+    give_up(std::string(impl_->file), error);
   }
 }
 

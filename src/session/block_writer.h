@@ -2,6 +2,7 @@
 // The recording file from the writing side: one SQLite database, records in blocks with a checksum each.
 // Private to session.
 
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,10 @@ class BlockWriter {
   BlockWriter(const std::string& file, const RecordingMeta& meta, const std::vector<SourceFile>& sources);
   ~BlockWriter();
 
+  /// The first commit into the fresh log, which syncs its header: done before records come it delays none. Throws
+  /// InputError; leaves no file behind then, and nothing but the destructor may follow.
+  void begin();
+
   struct Batch {
     const std::vector<StepRecord>& steps;
     const std::vector<SampleRecord>& samples;
@@ -32,6 +37,8 @@ class BlockWriter {
   void finish();
 
  private:
+  [[noreturn]] void give_up(const std::string& file, const std::exception& error);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -1,9 +1,12 @@
 #include "session/recorder.h"
 
+#include <pthread.h>
+#include <sched.h>
 #include <soci/sqlite3/soci-sqlite3.h>
 
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -19,6 +22,14 @@ namespace filum {
 namespace {
 
 constexpr std::size_t kMaxPending = 60000;  // records of a kind kept in memory while the disk refuses them
+
+/// Runs before ordinary threads, after the haptic loop, where the system allows it. A commit takes a millisecond
+/// in twenty; without this a machine with more work than cores lets the thread wait for half a second.
+void ask_for_prompt_wakes() noexcept {
+  sched_param priority{};
+  priority.sched_priority = 1;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
+}
 
 std::string checked(const RecorderOptions& options) {
   const RecordingMeta& meta = options.meta;
@@ -71,7 +82,9 @@ struct Recorder::Impl {
         array_hashes(options.array_hash_capacity),
         writer(checked(options), options.meta, options.sources) {}
 
+  void start();
   void run();
+  void begin() noexcept;
   void commit_what_came();
   void report_losses();
   template <class Record>
@@ -86,10 +99,12 @@ struct Recorder::Impl {
   Channel<SampleRecord> samples;
   Channel<EventRecord> events;
   Channel<ArrayHashRecord> array_hashes;
-  BlockWriter writer;  // used by the constructor, then by the thread, then by close()
+  BlockWriter writer;  // used by the constructor until the thread begins, then by the thread, then by close()
 
   mutable std::mutex mutex;  // of what follows
   std::condition_variable wake;
+  bool begun = false;
+  std::exception_ptr no_beginning;
   bool stop = false;
   std::optional<ScoreRecord> score;
   std::string trouble;
@@ -159,7 +174,37 @@ void Recorder::Impl::commit_what_came() {
   trouble.clear();
 }
 
+/// Returns when the thread runs and its first commit is on disk: neither its start nor the log's delays a record.
+void Recorder::Impl::start() {
+  thread = std::thread([this] { run(); });
+  {
+    std::unique_lock lock(mutex);
+    wake.wait(lock, [this] { return begun; });
+  }
+  if (!no_beginning) return;
+  thread.join();
+  std::rethrow_exception(no_beginning);
+}
+
+void Recorder::Impl::begin() noexcept {
+  std::exception_ptr failure;
+  try {
+    writer.begin();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  {
+    const std::lock_guard lock(mutex);
+    no_beginning = failure;
+    stop = stop || failure;
+    begun = true;
+  }
+  wake.notify_all();
+}
+
 void Recorder::Impl::run() {
+  ask_for_prompt_wakes();
+  begin();
   std::unique_lock lock(mutex);
   while (!stop) {
     wake.wait_for(lock, options.interval, [this] { return stop; });
@@ -173,7 +218,7 @@ Recorder::Recorder(RecorderOptions options) {
   options.meta.format = kRecordingFormat;
   if (options.meta.started_utc.empty()) options.meta.started_utc = utc_now();
   impl_ = std::make_unique<Impl>(std::move(options));
-  impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
+  impl_->start();
 }
 
 Recorder::~Recorder() {

@@ -1,7 +1,8 @@
 #pragma once
 // Writes a session to disk as it happens. The caller's threads only push into lock-free queues; a thread of
 // the recorder's own commits what came in every 20 ms, so that after a kill at any moment all but the last
-// 100 ms can be read back. The file is one SQLite database in WAL mode while it is open, and a single plain
+// 100 ms can be read back. It asks for real-time priority; where that is refused and more processes work than there
+// are cores, the system may let it wait, and more than 100 ms may be lost to a kill. The file is one SQLite database in WAL mode while it is open, and a single plain
 // file after close().
 
 #include <chrono>
@@ -39,7 +40,7 @@ struct RecorderStatus {
 
 class Recorder {
  public:
-  /// Creates the file and stores meta and sources. Throws InputError when the folder is missing, read-only or
+  /// Creates the file, stores meta and sources and makes the first commit of its thread. Throws InputError when the folder is missing, read-only or
   /// full, when the file exists, or when the participant code is not allowed.
   explicit Recorder(RecorderOptions options);
   /// close()
