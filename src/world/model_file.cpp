@@ -24,6 +24,7 @@ Vec3 read_direction(const YamlNode& node, const std::string& key) {
 Pose read_pose(const YamlNode& node) {
   Pose X;
   X.p = node.vec3("p", "mm");
+  if (!(X.p.norm() <= 1.0)) node.refuse("p", "a point within 1000 mm of the origin");
   const Vec3 z = read_direction(node, "handle");
   const Vec3 side = read_direction(node, "opening");
   const Vec3 x = side - side.dot(z) * z;

@@ -15,18 +15,39 @@
 namespace filum {
 namespace {
 
+// What a bench under a microscope can hold, widely taken: a slip of unit or exponent is refused, no material or instrument is.
+constexpr Range kBenchLength{1e-6, 1.0};        // [m]
+constexpr Range kThreadDiameter{5e-6, 1e-3};    // [m], beyond 12-0 and 5
+constexpr Range kThreadDensity{100.0, 25e3};    // [kg/m3], foams to tungsten
+constexpr Range kThreadStretching{1e-6, 1e6};   // [N], EA
+constexpr Range kThreadBending{1e-14, 1e-4};    // [N m2], EI and GJ
+constexpr Range kThreadStrength{1e-4, 1e3};     // [N]
+constexpr Range kStiffness{1e-2, 1e8};          // [N/m]
+constexpr Range kTurningStiffness{1e-6, 1e3};   // [N m/rad]
+constexpr Range kInstrumentMass{1e-4, 10.0};    // [kg]
+constexpr Range kInstrumentInertia{1e-10, 1.0}; // [kg m2]
+constexpr Range kGripForce{1e-4, 1e3};          // [N]
+constexpr Range kPelletMass{1e-12, 1.0};        // [kg]
+
+/// A point [m] of the bench.
+Vec3 read_point(const YamlNode& node, const std::string& key) {
+  const Vec3 p = node.vec3(key, "mm");
+  if (!(p.norm() <= kBenchLength.high)) node.refuse(key, "a point within 1000 mm of the origin");
+  return p;
+}
+
 PostShape read_bar(const YamlNode& node) {
   PostShape bar;
-  bar.p_W = node.vec3("centre", "mm");
+  bar.p_W = read_point(node, "centre");
   bar.axis_W = read_direction(node, "axis");
-  bar.radius = node.quantity("radius", "mm", Range::positive());
-  bar.half_length = 0.5 * node.quantity("length", "mm", Range::positive());
+  bar.radius = node.quantity("radius", "mm", kBenchLength);
+  bar.half_length = 0.5 * node.quantity("length", "mm", kBenchLength);
   return bar;
 }
 
 Points read_thread_path(const YamlNode& scene, double longest, int capacity) {
   const double length = scene.quantity("length", "mm", {1e-3, 1.0});
-  const Vec3 tip = scene.vec3("short_end", "mm");
+  const Vec3 tip = read_point(scene, "short_end");
   const Vec3 direction = read_direction(scene, "direction");
   const int n = std::max(8, static_cast<int>(std::ceil(length / longest)) + 1);
   if (n > capacity) scene.refuse("length", "a thread that resolution.nodes times resolution.longest reaches along");
@@ -36,9 +57,9 @@ Points read_thread_path(const YamlNode& scene, double longest, int capacity) {
 }
 
 void read_resolution(const YamlNode& node, ResolutionOptions& o, int& capacity) {
-  o.shortest = node.quantity("shortest", "um", Range::positive());
+  o.shortest = node.quantity("shortest", "um", kBenchLength);
   o.longest = node.quantity("longest", "um", {o.shortest, 1.0});
-  o.touching_edge = node.quantity("touching", "um", Range::positive());
+  o.touching_edge = node.quantity("touching", "um", kBenchLength);
   capacity = node.integer("nodes", 16, 2000);
 }
 
@@ -73,13 +94,13 @@ void read_pellets(const YamlNode& scene, Model& m) {
     if (m.pellets.size() == m.description.pellets.size()) item.refuse("name", "at most eight objects");
     PelletParameters p;
     p.name = item.text("name");
-    p.start = item.vec3("p", "mm");
-    p.radius = item.quantity("radius", "mm", Range::positive());
-    p.mass = item.quantity("mass", "mg", Range::positive());
-    p.stiffness = item.quantity("stiffness", "N/m", Range::positive());
+    p.start = read_point(item, "p");
+    p.radius = item.quantity("radius", "mm", kBenchLength);
+    p.mass = item.quantity("mass", "mg", kPelletMass);
+    p.stiffness = item.quantity("stiffness", "N/m", kStiffness);
     p.friction = item.number("friction", {0.0, 2.0, true});
-    p.adhesion = item.quantity("adhesion", "mN", Range::not_negative());
-    p.strength = item.quantity("strength", "mN", Range::positive());
+    p.adhesion = item.quantity("adhesion", "mN", Range::between(0.0, kGripForce.high));
+    p.strength = item.quantity("strength", "mN", kGripForce);
     item.text("source");
     m.description.pellets[m.pellets.size()] = {p.name, p.radius, p.slip_limit(), p.strength};
     m.pellets.push_back(p);
@@ -93,17 +114,17 @@ RodMaterial load_suture(const std::string& path, ContactMaterial& contact) {
   const YamlNode file = open_model_file(path, "filum-suture/1");
   file.text("title");
   RodMaterial m;
-  m.radius = 0.5 * measured(file, "diameter", "um", Range::positive());
-  m.density = measured(file, "density", "kg/m3", Range::positive());
-  m.EA = measured(file, "axial_stiffness", "N", Range::positive());
-  m.EI = measured(file, "bending_stiffness", "N.m2", Range::positive());
-  m.GJ = measured(file, "twisting_stiffness", "N.m2", Range::positive());
+  m.radius = 0.5 * measured(file, "diameter", "um", kThreadDiameter);
+  m.density = measured(file, "density", "kg/m3", kThreadDensity);
+  m.EA = measured(file, "axial_stiffness", "N", kThreadStretching);
+  m.EI = measured(file, "bending_stiffness", "N.m2", kThreadBending);
+  m.GJ = measured(file, "twisting_stiffness", "N.m2", kThreadBending);
   m.friction = measured(file, "friction_coefficient", "-", Range::between(0.0, 2.0));
-  m.strength = measured(file, "strength", "N", Range::positive());
-  m.drag = measured(file, "air_drag", "N.s/m2", Range::not_negative());
-  m.most_elastic_curvature = most_elastic_curvature(measured(file, "yield_strain", "-", Range::positive()), m.radius);
-  m.internal_friction = measured(file, "internal_friction", "ms", Range::not_negative());
-  contact.stiffness = measured(file, "squeeze_stiffness", "N/m", Range::positive());
+  m.strength = measured(file, "strength", "N", kThreadStrength);
+  m.drag = measured(file, "air_drag", "N.s/m2", Range::between(0.0, 1.0));
+  m.most_elastic_curvature = most_elastic_curvature(measured(file, "yield_strain", "-", Range::between(1e-4, 10.0)), m.radius);
+  m.internal_friction = measured(file, "internal_friction", "ms", Range::between(0.0, 10.0));
+  contact.stiffness = measured(file, "squeeze_stiffness", "N/m", kStiffness);
   contact.friction = m.friction;
   contact.presliding = 0.2 * m.radius;
   file.finish();
@@ -115,21 +136,21 @@ InstrumentParameters load_instrument(const std::string& path) {
   InstrumentParameters p;
   p.name = file.text("title");
   p.kind = file.choice("kind", {"forceps", "needle-holder", "scissors"});
-  p.jaw_length = file.quantity("jaw_length", "mm", Range::positive());
-  p.tip_radius = file.quantity("tip_radius", "mm", Range::positive());
-  p.base_radius = file.quantity("base_radius", "mm", Range::positive());
-  p.shaft_length = file.quantity("shaft_length", "mm", Range::positive());
+  p.jaw_length = file.quantity("jaw_length", "mm", kBenchLength);
+  p.tip_radius = file.quantity("tip_radius", "mm", kBenchLength);
+  p.base_radius = file.quantity("base_radius", "mm", kBenchLength);
+  p.shaft_length = file.quantity("shaft_length", "mm", kBenchLength);
   p.max_angle = file.quantity("max_angle", "deg", {0.01, 1.5});
-  p.mass = file.quantity("apparent_mass", "g", Range::positive());
-  p.inertia = file.quantity("apparent_inertia", "kg.m2", Range::positive());
-  p.coupling_stiffness = file.quantity("coupling_stiffness", "N/m", Range::positive());
-  p.turning_stiffness = file.quantity("turning_stiffness", "N.m/rad", Range::positive());
+  p.mass = file.quantity("apparent_mass", "g", kInstrumentMass);
+  p.inertia = file.quantity("apparent_inertia", "kg.m2", kInstrumentInertia);
+  p.coupling_stiffness = file.quantity("coupling_stiffness", "N/m", kStiffness);
+  p.turning_stiffness = file.quantity("turning_stiffness", "N.m/rad", kTurningStiffness);
   p.coupling_damping = 2.0 * std::sqrt(p.coupling_stiffness * p.mass);  // critical
   p.turning_damping = 2.0 * std::sqrt(p.turning_stiffness * p.inertia);
-  p.grip_stiffness = file.quantity("grip_stiffness", "N.m/rad", Range::positive());
-  p.max_grip_force = file.quantity("max_grip_force", "N", Range::positive());
-  p.pads.half_width = 0.5 * file.quantity("pad_width", "mm", Range::positive());
-  p.pads.length = file.quantity("pad_length", "mm", Range::positive());
+  p.grip_stiffness = file.quantity("grip_stiffness", "N.m/rad", kTurningStiffness);
+  p.max_grip_force = file.quantity("max_grip_force", "N", kGripForce);
+  p.pads.half_width = 0.5 * file.quantity("pad_width", "mm", kBenchLength);
+  p.pads.length = file.quantity("pad_length", "mm", kBenchLength);
   p.pads.friction = file.number("pad_friction", Range::between(0.0, 2.0));
   file.text("source");
   file.finish();
@@ -171,7 +192,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   }
   for (const YamlNode& lip : scene.items_or_none("lips")) m->lips.push_back(read_bar(lip));
   for (const YamlNode& bar : scene.items_or_none("notch")) d.notch.push_back(read_bar(bar));
-  d.floor_height = scene.quantity("floor", "mm");
+  d.floor_height = scene.quantity("floor", "mm", Range::between(-kBenchLength.high, kBenchLength.high));
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
   m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));
   read_instruments(root, scene, *m);
@@ -179,7 +200,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   if (scene.has("tissue")) read_tissue(root, scene.map("tissue"), *m);
   read_pellets(scene, *m);
   d.has_field = scene.has("field");
-  if (d.has_field) d.field_W = scene.vec3("field", "mm");
+  if (d.has_field) d.field_W = read_point(scene, "field");
   m->step.max_iterations = scene.integer("newton_iterations", 1, 100);
   m->step.strict_iterations = 6;
   m->step.longest_move = 16.0 * m->thread.radius;

@@ -151,6 +151,60 @@ TEST_F(SceneFile, ModelErrorsNameFileAndField) {
   expect_refusal(forceps_, "max_grip_force: \"3 N\"", "max_grip_force: \"3 J\"", "max_grip_force");
 }
 
+TEST_F(SceneFile, SuturesBeyondAnyThreadAreRefused) {
+  const auto value = [&](const std::string& field, const std::string& to) {
+    const std::string text = read(root_ / suture_);
+    const auto at = text.find("\n" + field + ":") + 1;
+    const auto from = text.substr(at, text.find("uncertainty", at) - at);
+    ASSERT_NE(from.find("value"), std::string::npos) << field;
+    expect_refusal(suture_, from, field + ":\n  value: \"" + to + "\"\n  ", field);
+  };
+  for (const char* to : {"25 m", "25 nm", "1.1 mm"}) value("diameter", to);
+  for (const char* to : {"1e300 N.m2", "1e-300 N.m2"}) {
+    value("bending_stiffness", to);
+    value("twisting_stiffness", to);
+  }
+  for (const char* to : {"1e300 N", "1e-300 N"}) {
+    value("axial_stiffness", to);
+    value("strength", to);
+  }
+  for (const char* to : {"1e6 kg/m3", "1e-9 kg/m3"}) value("density", to);
+  for (const char* to : {"1e300 N/m", "1e-300 N/m"}) value("squeeze_stiffness", to);
+  for (const char* to : {"1e-30", "1e30"}) value("yield_strain", to);
+  value("air_drag", "2 N.s/m2");
+  value("internal_friction", "1e5 ms");
+}
+
+TEST_F(SceneFile, InstrumentsBeyondAnyHandAreRefused) {
+  for (const char* to : {"12 km", "12 nm"}) expect_refusal(forceps_, "jaw_length: \"12 mm\"", std::string("jaw_length: \"") + to + '"', "jaw_length");
+  for (const char* to : {"1e-300 g", "30 kg"}) expect_refusal(forceps_, "apparent_mass: \"30 g\"", std::string("apparent_mass: \"") + to + '"', "apparent_mass");
+  expect_refusal(forceps_, "tip_radius: \"0.15 mm\"", "tip_radius: \"0.15 nm\"", "tip_radius");
+  expect_refusal(forceps_, "base_radius: \"0.7 mm\"", "base_radius: \"7 m\"", "base_radius");
+  expect_refusal(forceps_, "shaft_length: \"60 mm\"", "shaft_length: \"60 m\"", "shaft_length");
+  expect_refusal(forceps_, "\"3e-6 kg.m2\"", "\"3e6 kg.m2\"", "apparent_inertia");
+  expect_refusal(forceps_, "\"500 N/m\"", "\"5e100 N/m\"", "coupling_stiffness");
+  expect_refusal(forceps_, "\"0.05 N.m/rad\"", "\"1e-30 N.m/rad\"", "turning_stiffness");
+  expect_refusal(forceps_, "\"0.1 N.m/rad\"", "\"1e30 N.m/rad\"", "grip_stiffness");
+  expect_refusal(forceps_, "\"3 N\"", "\"3e9 N\"", "max_grip_force");
+  expect_refusal(forceps_, "pad_width: \"0.3 mm\"", "pad_width: \"3 km\"", "pad_width");
+  expect_refusal(forceps_, "pad_length: \"2 mm\"", "pad_length: \"2 nm\"", "pad_length");
+}
+
+TEST_F(SceneFile, GeometryBeyondTheBenchIsRefused) {
+  for (const char* to : {"4 km", "0.4 nm"}) expect_refusal(scene_, "radius: \"0.4 mm\"", std::string("radius: \"") + to + '"', "radius");
+  expect_refusal(scene_, "length: \"12 mm\"", "length: \"12 km\"", "length");
+  expect_refusal(scene_, "\"0.410 mm\"", "\"0.410 km\"", "post.centre");
+  expect_refusal(scene_, "short_end: [\"", "short_end: [\"1e9", "short_end");
+  expect_refusal(scene_, "floor: \"-3 mm\"", "floor: \"-3 km\"", "floor");
+  expect_refusal(scene_, "shortest: \"30 um\"", "shortest: \"30 pm\"", "shortest");
+  expect_refusal(scene_, "touching: \"60 um\"", "touching: \"60 km\"", "touching");
+  const std::string text = read(root_ / scene_);
+  const auto at = text.find("p: [\"", text.find("instruments:"));
+  ASSERT_NE(at, std::string::npos);
+  const std::string place = text.substr(at, text.find(']', at) + 1 - at);
+  expect_refusal(scene_, place, "p: [\"1 m\", \"1 m\", \"0 m\"]", "p");
+}
+
 TEST_F(SceneFile, MissingModelFilesAreNamed) {
   fs::remove(root_ / forceps_);
   try {
