@@ -124,6 +124,78 @@ TEST(World, SilentDeviceKeepsItsToolStill) {
   EXPECT_STREQ(w.observation().events[0].name, "input-back");
 }
 
+/// A straight thread in air without weight, which two instruments take 6 mm apart and draw apart along x.
+struct Pull {
+  static std::shared_ptr<const Model> bench() {
+    auto m = std::make_shared<Model>(*scene());
+    m->lips.clear();
+    m->description.notch.clear();
+    m->description.post.p_W = m->description.base.p_W = Vec3(0.0, 0.0, 0.1);
+    m->step.gravity.setZero();
+    return m;
+  }
+
+  void step(double apart) {
+    Inputs in;
+    for (std::size_t i = 0; i < model->instruments.size(); ++i) in.tools[i] = {model->instrument_start[i], 0.2, 0.0, false, true, 0};
+    for (std::size_t i = 0; i < 2; ++i) {
+      ToolInput& t = in.tools[i];
+      const Vec3 along = i == 0 ? Vec3(-1.0, 0.0, 0.0) : Vec3(1.0, 0.0, 0.0);
+      const Vec3 on_thread = Vec3(-7e-3, 0.0, 0.0) + 3e-3 * along - 0.8e-3 * (t.X_WD.q * Vec3::UnitZ());
+      const double down = std::clamp(steps / 200.0, 0.0, 1.0);
+      t.X_WD.p = (1.0 - down) * t.X_WD.p + down * on_thread + 0.5 * apart * along;
+      if (steps > 250) t.grip_angle = -0.3;
+    }
+    world.step(in);
+    ++steps;
+    const Observation& o = world.observation();
+    force = 0.5 * (o.tools[0].f_T_W.x() - o.tools[1].f_T_W.x());
+    for (int e = 0; e < o.n_events; ++e) {
+      if (std::string(o.events[static_cast<std::size_t>(e)].name) != "thread-break") continue;
+      ++breaks;
+      broke_at = o.events[static_cast<std::size_t>(e)].value;
+    }
+  }
+  int parted_edges() const {
+    const RodState& s = world.state().thread;
+    return static_cast<int>((s.alive.head(s.n - 1).array() == 0).count());
+  }
+
+  std::shared_ptr<const Model> model = bench();
+  World world{model};
+  int steps = 0, breaks = 0;
+  double force = 0.0;     // [N], of the thread on the instruments, along x
+  double broke_at = 0.0;  // [N]
+};
+
+TEST(World, ThreadBreaksAtItsStrengthAndNotBelow) {
+  Pull pull;
+  const double strength = pull.model->thread.strength;
+  while (pull.steps < 400) pull.step(0.0);
+  ASSERT_GE(pull.world.observation().tools[0].grasped_edge, 0);
+  ASSERT_GE(pull.world.observation().tools[1].grasped_edge, 0);
+  constexpr double kSpeed = 2e-6;  // [m] a step: some thousandth of the strength
+  double apart = 0.0;
+  while (pull.force < 0.95 * strength && apart < 5e-3) pull.step(apart += kSpeed);
+  ASSERT_GE(pull.force, 0.95 * strength) << "the thread never became as taut";
+  for (int k = 0; k < 250; ++k) pull.step(apart);
+  EXPECT_EQ(pull.breaks, 0) << "below the strength";
+  EXPECT_EQ(pull.parted_edges(), 0);
+  double before = pull.force;
+  while (pull.breaks == 0 && apart < 5e-3) {
+    before = pull.force;
+    pull.step(apart += kSpeed);
+  }
+  ASSERT_EQ(pull.breaks, 1);
+  EXPECT_GT(pull.broke_at, strength);
+  EXPECT_NEAR(pull.broke_at, strength, 0.01 * strength);
+  EXPECT_NEAR(before, strength, 0.03 * strength) << "as the instruments feel it";
+EXPECT_EQ(pull.parted_edges(), 1);
+  for (int k = 0; k < 250; ++k) pull.step(apart);
+  EXPECT_EQ(pull.breaks, 1);
+  EXPECT_LT(pull.force, 0.05 * strength) << "a parted thread carries nothing";
+}
+
 TEST(World, StepOfOursAllocatesNothing) {
   if (!FILUM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "allocations cannot be counted under a sanitizer";
   World w(scene());
