@@ -369,7 +369,8 @@ void Trainer::finish_pull() {
       const std::lock_guard lock(store_mutex_);
       store_->finish(pull->id(), ScoreRecord{r.passed, r.total, r.seconds, ""});
     } catch (const std::exception& error) {
-      view_.warning = std::string("The session is stored, but not entered in the index: ") + error.what();
+      const std::string also = status.healthy ? "The session is stored, but" : view_.warning + (view_.warning.ends_with('.') ? " It is" : ". It is");
+      view_.warning = also + " not entered in the index: " + error.what();
     }
   }
   if (!session_ && !replay_ && view_.session == pull->id()) server_->publish_result(result_message(r, pull->id()));

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "started_trainer.h"
+#include "tests/session/disk_limit.h"
 
 namespace filum {
 namespace {
@@ -99,6 +100,19 @@ TEST(Trainer, WithoutAStoreItTrainsAndWarns) {
   EXPECT_FALSE(running.at("recording").get<bool>());
   EXPECT_NE(running.at("warning").get<std::string>().find("NOT being stored"), std::string::npos);
   EXPECT_TRUE(trainer.get("/api/sessions").at("sessions").empty());
+}
+
+TEST(Trainer, OnAFullDiskBothTheRecordingAndTheIndexAreWarnedOf) {
+  const StartedTrainer trainer;
+  Client browser(trainer.port());
+  browser.say(R"({"type":"start","task":"tip-hold","input":"demo"})");
+  ASSERT_TRUE(hear_state(browser, "running").at("recording").get<bool>());
+  const DiskLimit full(0);
+  browser.say(R"({"type":"stop"})");
+  const std::string warning = hear_state(browser, "ended").at("warning");
+  EXPECT_NE(warning.find("incomplete"), std::string::npos) << warning;
+  EXPECT_NE(warning.find("not entered in the index"), std::string::npos) << warning;
+  EXPECT_EQ(warning.find("is stored"), std::string::npos) << warning;
 }
 
 TEST(Trainer, AModelThatNoTaskCanTakeIsRefusedAtOnce) {
