@@ -216,6 +216,7 @@ LiveOutcome LiveSession::end() {
   scoring_thread_.join();
   if (failure_) std::rethrow_exception(failure_);
   pointer_ = nullptr;
+  for (std::size_t i = 0; i < hands_->n_devices(); ++i) outcome_.devices.push_back({device_names_[i], hands_->device(i).health()});
   hands_.reset();
   outcome_.result = with_handle_events(task_.finish());
   const Observation& o = world_.observation();

@@ -44,6 +44,12 @@ struct LiveOptions {
   std::function<void(const TaskEvent&)> show_event;  // as they happen
 };
 
+/// A device and what it said of its health at the session's end.
+struct DeviceOutcome {
+  std::string name;
+  DeviceHealth health;
+};
+
 struct LiveOutcome {
   Result result;
   std::uint64_t steps = 0;
@@ -52,6 +58,7 @@ struct LiveOutcome {
   double real_time_factor = 0.0;   // of the whole session
   std::uint64_t overruns = 0;      // steps that took longer than dt
   std::uint64_t state_hash = 0;
+  std::vector<DeviceOutcome> devices;
 };
 
 class LiveSession {

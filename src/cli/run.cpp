@@ -44,6 +44,15 @@ void print_text(const LiveOutcome& outcome, const Streams& io) {
   for (const std::string& line : r.verdict) std::fprintf(io.out, "%s\n", line.c_str());
   std::fprintf(io.out, "%.1f s of scene in %.1f s (real-time factor %.2f), %" PRIu64 " late steps, state %s\n", outcome.scene_seconds,
               outcome.wall_seconds, outcome.real_time_factor, outcome.overruns, hash_text_of(outcome.state_hash).c_str());
+  for (const DeviceOutcome& d : outcome.devices) {
+    std::fprintf(io.out, "%s: %" PRIu64 " samples received, %" PRIu64 " lost, %" PRIu64 " frames damaged, %" PRIu64 " samples refused\n", d.name.c_str(),
+                 d.health.received, d.health.lost, d.health.corrupt, d.health.rejected);
+  }
+}
+
+/// The keys are those of a device in the server's pictures.
+nlohmann::ordered_json json_of(const DeviceOutcome& d) {
+  return {{"name", d.name}, {"state", name_of(d.health.state)}, {"received", d.health.received}, {"lost", d.health.lost}, {"corrupt", d.health.corrupt}, {"rejected", d.health.rejected}};
 }
 
 int run(const RunOptions& o, const Streams& io) {
@@ -70,6 +79,8 @@ int run(const RunOptions& o, const Streams& io) {
     document["steps"] = outcome.steps;
     document["scene_seconds"] = outcome.scene_seconds;
     document["state_hash"] = hash_text_of(outcome.state_hash);
+    document["devices"] = nlohmann::ordered_json::array();
+    for (const DeviceOutcome& d : outcome.devices) document["devices"].push_back(json_of(d));
     print_json(io.out, document);
   } else {
     print_text(outcome, io);

@@ -29,7 +29,11 @@ void expect_score(const Json& score) {
 
 TEST(Run, JsonHoldsTheKeysOfTheContractAndEqualRunsEndInTheSameState) {
   const Json d = run_of("tip-hold", "0.5");
-  expect_keys(d, {"task", "finished", "passed", "seconds", "real_time_factor", "overruns", "score", "events", "state_hash", "steps", "scene_seconds"});
+  expect_keys(d, {"task", "finished", "passed", "seconds", "real_time_factor", "overruns", "score", "events", "state_hash", "steps", "scene_seconds", "devices"});
+  ASSERT_EQ(d["devices"].size(), 1u);
+  expect_keys(d["devices"][0], {"name", "state", "received", "lost", "corrupt", "rejected"});
+  EXPECT_GT(d["devices"][0]["received"].get<int>(), 100);
+  EXPECT_EQ(d["devices"][0]["lost"], 0);
   EXPECT_EQ(d["task"], "tip-hold");
   EXPECT_FALSE(d["finished"].get<bool>());
   EXPECT_FALSE(d["passed"].get<bool>());
@@ -61,6 +65,8 @@ TEST(Run, TextSaysTheSameAsJson) {
   EXPECT_EQ(text.code, kDone);
   EXPECT_NE(text.out.find("not finished, not passed"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("state " + d["state_hash"].get<std::string>() + "\n"), std::string::npos) << text.out;
+  const auto& device = d["devices"][0];
+  EXPECT_NE(text.out.find(device["name"].get<std::string>() + ": " + device["received"].dump() + " samples received, 0 lost, 0 frames damaged"), std::string::npos) << text.out;
 }
 
 TEST(Run, WhatIsWrongIsNamedWithWhatWasExpected) {

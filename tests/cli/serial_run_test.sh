@@ -51,6 +51,9 @@ for _ in $(seq 100); do [ -e "$work/port" ] && break; sleep 0.1; done
 "$filum" export "$work/session" --format csv --out "$work/csv" >/dev/null 2>"$work/export.err" || fail "export"
 samples=$(find "$work/csv" -name 'samples*.csv' -exec cat {} + | wc -l)
 [ "$samples" -gt 500 ] || fail "only $samples device samples were stored"
+for count in received lost corrupt; do
+  [ "$(field "$work/live.json" devices.0.$count)" -gt 0 ] || fail "no count of samples $count, of a link that drops and damages some"
+done
 grep -q '"foreign-calibration"' "$work/live.json" || fail "the calibration of another handle is not said"
 grep -rq foreign-calibration "$work/csv" || fail "nor recorded"
 "$filum" replay "$work/session" --json >"$work/replay.json" 2>"$work/replay.err" || fail "replay exited with $?"
