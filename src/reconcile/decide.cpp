@@ -242,7 +242,7 @@ std::set<Effect> common(const Fit& winner, const std::vector<const Fit*>& rivals
 double gain_asked(const Fitter& fitter, const Fit& f) {
   std::vector<double> sizes;
   for (std::size_t i = 0; i < fitter.use.size(); ++i)
-    if (fitter.use[i]) sizes.push_back(std::abs(f.log_gain[i]));
+    for (std::size_t c = 0; fitter.use[i] && c < f.instrument.size(); ++c) sizes.push_back(std::abs(f.log_gain[i] + std::log(f.instrument[c])));
   return median(std::move(sizes));
 }
 

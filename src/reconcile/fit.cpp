@@ -24,6 +24,12 @@ void whiten(Eigen::Ref<Eigen::MatrixXd> m, const std::vector<int>& at, const Out
   m.row(0) /= noise.sigma;
 }
 
+template <class F>
+auto& value_of(F& f, const Fitter::Global& g) {
+  const auto i = static_cast<std::size_t>(g.index);
+  return g.form == Fitter::kInstrument ? f.instrument[i] : g.form < 0 ? f.base[i] : f.params[static_cast<std::size_t>(g.form)][i];
+}
+
 }  // namespace
 
 Fitter::Fitter(const RigModel& model, Noise noise) : model_(model), noise_(std::move(noise)) {
@@ -64,17 +70,17 @@ std::vector<Fitter::Global> Fitter::globals(const std::vector<const Form*>& form
       const ParamSpec& p = forms[f]->params[i];
       out.push_back({static_cast<int>(f), static_cast<int>(i), p.low, p.high, p.logarithmic, p.high - p.low});
     }
+  // a first output's gain is the records' own; how far a second instrument is off against the first is one number for all of them
+  for (std::size_t c = 1; model_.has_gain() && c < model_.data().outputs.size(); ++c) out.push_back({kInstrument, static_cast<int>(c), 0.8, 1.25, true, 1.0});
   return out;
 }
 
-double Fitter::get(const Fit& f, const Global& g) const {
-  const double v = g.form < 0 ? f.base[static_cast<std::size_t>(g.index)] : f.params[static_cast<std::size_t>(g.form)][static_cast<std::size_t>(g.index)];
-  return g.logarithmic ? std::log(v) : v;
-}
+double& Fitter::value(Fit& f, const Global& g) { return value_of(f, g); }
+
+double Fitter::get(const Fit& f, const Global& g) const { return g.logarithmic ? std::log(value_of(f, g)) : value_of(f, g); }
 
 void Fitter::put(Fit& f, const Global& g, double x) const {
-  const double v = std::clamp(g.logarithmic ? std::exp(x) : x, g.low, g.high);
-  (g.form < 0 ? f.base[static_cast<std::size_t>(g.index)] : f.params[static_cast<std::size_t>(g.form)][static_cast<std::size_t>(g.index)]) = v;
+  value(f, g) = std::clamp(g.logarithmic ? std::exp(x) : x, g.low, g.high);
 }
 
 Setting Fitter::setting(const Fit& f, int trial) const {
@@ -87,6 +93,7 @@ Setting Fitter::setting(const Fit& f, int trial) const {
   }
   s.scale = std::exp(f.log_scale[static_cast<std::size_t>(trial)]);
   s.gain = std::exp(f.log_gain[static_cast<std::size_t>(trial)]);
+  if (f.instrument.size() > 1 && model_.has_gain()) s.instrument = f.instrument.data();
   return s;
 }
 
@@ -189,6 +196,8 @@ struct Fitter::Solver {
       r[i] = fitter.residual(trials[i], fitter.setting(f, trials[i]));
       sum += r[i].squaredNorm() + prior(f, trials[i]);
     }
+    for (const Global& p : g)
+      if (p.form == kInstrument) sum += std::pow(fitter.get(f, p) / fitter.noise_.gain_scatter, 2);
     return std::isfinite(sum) ? sum : 1e300;
   }
   double prior(const Fit& f, int trial) const {
@@ -221,6 +230,12 @@ struct Fitter::Solver {
       };
       if (fitter.model_.has_scale()) add(f.log_scale[t], fitter.noise_.scatter);
       if (fitter.model_.has_gain()) add(f.log_gain[t], fitter.noise_.gain_scatter);
+    }
+    for (Eigen::Index k = 0; k < n; ++k) {
+      if (g[static_cast<std::size_t>(k)].form != kInstrument) continue;
+      const double weight = std::pow(fitter.noise_.gain_scatter, -2);
+      A(k, k) += weight;
+      b[k] -= weight * fitter.get(f, g[static_cast<std::size_t>(k)]);
     }
   }
 
@@ -283,7 +298,8 @@ Fit Fitter::fit(const std::vector<const Form*>& forms, const std::vector<double>
     for (const Form* form : forms) f.params.push_back(form->starts.at(0));
   f.log_scale.assign(use.size(), 0.0);
   f.log_gain.assign(use.size(), 0.0);
-  if (warm != nullptr) f.log_scale = warm->log_scale, f.log_gain = warm->log_gain;
+  f.instrument.assign(model_.data().outputs.size(), 1.0);
+  if (warm != nullptr) f.log_scale = warm->log_scale, f.log_gain = warm->log_gain, f.instrument = warm->instrument;
   Solver solver{*this, globals(forms), {}, {}, {}, {}, {}, {}};
   for (const Global& g : solver.g) put(f, g, get(f, g));
   for (std::size_t i = 0; i < use.size(); ++i)
@@ -333,6 +349,7 @@ void Fitter::complete(Fit& f, const std::vector<Global>& g) const {
   f.parameters = static_cast<int>(columns);
   f.at_bound = false;
   for (const Global& p : g) {
+    if (p.form == kInstrument) continue;  // in every fit, and known beforehand as the records' gains are
     // what is held within a hundredth (the depth of a layer that was read off, an angle that only scales) costs no evidence
     if (p.form >= 0 && p.high - p.low <= 0.01 * std::abs(p.high)) continue;
     ++f.parameters;

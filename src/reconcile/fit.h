@@ -20,7 +20,7 @@ struct OutputNoise {
 struct Noise {
   std::vector<OutputNoise> output;
   double scatter = 0.01;       // standard deviation of the logarithm of a record's stiffness
-  double gain_scatter = 0.006; // of a record's output gain
+  double gain_scatter = 0.006; // of a record's output gain, and of an instrument's (contract: up to 1 %, evenly: 0.0058)
 };
 
 struct FitOptions {
@@ -34,6 +34,7 @@ struct Fit {
   std::vector<double> base;                   // [SI], all baseline parameters
   std::vector<std::vector<double>> params;    // [SI], per form
   std::vector<double> log_scale, log_gain;    // per trial
+  std::vector<double> instrument;             // gain of each output's instrument, common to all records
   double chi2 = 1e300;                        // whitened, with the priors of the records' scales
   int samples = 0;                            // that entered
   int parameters = 0;                         // global ones and free columns
@@ -70,13 +71,16 @@ class Fitter {
   double low(int baseline) const { return low_[static_cast<std::size_t>(baseline)]; }
   double high(int baseline) const { return high_[static_cast<std::size_t>(baseline)]; }
 
+  static constexpr int kInstrument = -2;
   struct Global {
-    int form = -1, index = 0;  // form -1: baseline
+    int form = -1, index = 0;  // form -1: baseline; kInstrument: gain of an output's instrument, with a prior like the records'
     double low = 0, high = 0;
     bool logarithmic = false;
     double unit = 1.0;         // step size of a linear parameter
   };
   std::vector<Global> globals(const std::vector<const Form*>& forms) const;
+  /// The value that a global parameter stands for [SI].
+  static double& value(Fit& f, const Global& g);
 
   /// Whitened, projected residual of one trial; optional raw residual and prediction.
   Eigen::VectorXd residual(int trial, const Setting& s, std::vector<Eigen::VectorXd>* raw = nullptr, std::vector<Eigen::VectorXd>* predicted = nullptr) const;

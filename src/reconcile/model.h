@@ -67,6 +67,7 @@ struct Setting {
   const double* base = nullptr;
   double scale = 1.0;   // of this specimen's stiffness (friction coefficient, gain) against the batch
   double gain = 1.0;    // of this record's output
+  const double* instrument = nullptr;  // gain of each output's own instrument, the same in all records; null: 1
   int mesh = 1;         // times as many cells, points and modes as usual: 2 tells what the usual number costs (numerics.h)
   const Kernel* drained = nullptr;    // tissue: what the mesh says of drainage in place of the series (full_tissue.cpp)
   const PressTable* press = nullptr;  // spatula-press: what elements that stiffen, soften and set add (full_press.cpp)

@@ -113,7 +113,7 @@ Rival rival_on(const Fitter& fitter, const Fit& f, const Trial& t, double share)
   for (Eigen::Index k = 0; k < n; ++k) {
     const Fitter::Global& g = globals[static_cast<std::size_t>(k)];
     Fit probe = f;
-    double& v = g.form < 0 ? probe.base[static_cast<std::size_t>(g.index)] : probe.params[static_cast<std::size_t>(g.form)][static_cast<std::size_t>(g.index)];
+    double& v = Fitter::value(probe, g);
     double h = g.logarithmic ? 1e-4 : 1e-5 * std::max(std::abs(v), 1e-2 * g.unit);
     if ((g.logarithmic ? v * std::exp(h) : v + h) > g.high) h = -h;
     v = g.logarithmic ? v * std::exp(h) : v + h;

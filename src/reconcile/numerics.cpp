@@ -59,7 +59,8 @@ std::vector<Sensitivity> check_sensitivities(const Fitter& fitter, const Fit& fi
   std::vector<Sensitivity> out;
   for (std::size_t k = 0; k < globals.size(); ++k) {
     const Fitter::Global& g = globals[k];
-    const std::string name = g.form < 0 ? fitter.model().baseline()[static_cast<std::size_t>(g.index)].name
+    const std::string name = g.form == Fitter::kInstrument ? "gain of " + fitter.model().data().outputs[static_cast<std::size_t>(g.index)]
+                             : g.form < 0 ? fitter.model().baseline()[static_cast<std::size_t>(g.index)].name
                                         : info(fit.forms[static_cast<std::size_t>(g.form)]->effect).name + ": " + fit.forms[static_cast<std::size_t>(g.form)]->params[static_cast<std::size_t>(g.index)].name;
     if (g.form >= 0 && g.high - g.low <= 0.01 * std::abs(g.high)) continue;  // held
     Sensitivity best{name, INFINITY, 1.0};

@@ -30,6 +30,14 @@ Screen::Screen(const Fitter& fitter, const Fit& fit) : fitter_(fitter), fit_(fit
     A.noalias() += G_.back().transpose() * G_.back();
     if (own > 0) A.noalias() -= C_.back() * D_.back() * C_.back().transpose();
   }
+  instrument_ = Eigen::VectorXd::Zero(ng);
+  for (Eigen::Index k = 0; k < ng; ++k)
+    if (const auto& p = g[static_cast<std::size_t>(k)]; p.form == Fitter::kInstrument) {
+      const double weight = std::pow(fitter.noise().gain_scatter, -2);
+      instrument_[k] = weight * std::log(fit.instrument[static_cast<std::size_t>(p.index)]);
+      A(k, k) += weight, all(k, k) += weight;
+      shared_.push_back(k);
+    }
   for (Eigen::Index k = 0; k < ng; ++k) A(k, k) += 1e-9 * std::max(A(k, k), 1e-12) + 1e-300, all(k, k) += 1e-12 * all(k, k) + 1e-300;
   common_ = ng > 0 ? all.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : all;
   S_ = ng > 0 ? A.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : A;
@@ -87,7 +95,7 @@ Score Screen::score(const Form& form, const std::vector<double>& start) const {
       r.g += G_[i].transpose() * r_[i];
       if (n.size() > 0) r.g -= C_[i] * (D_[i] * n), along -= s.n[i].dot(D_[i] * n);
     }
-    if (r.g.size() > 0) along -= s.g.dot(S_ * r.g);
+    if (r.g.size() > 0) along -= s.g.dot(S_ * (r.g + instrument_));
   }
   out.amplitude = -along / out.seen;
   const bool either_sign = !form.params.empty() && form.params[0].low < 0.0 && form.params[0].high > 0.0;
@@ -109,12 +117,15 @@ std::vector<Score> Screen::all(const std::vector<Form>& forms) const {
 
 std::vector<Eigen::VectorXd> Screen::repetition(Rng& rng) const {
   std::vector<Eigen::VectorXd> y;
+  std::vector<double> gain;  // errors of the instruments, the same in all records
+  for (std::size_t k = 0; k < shared_.size(); ++k) gain.push_back(fitter_.noise().gain_scatter * rng.normal());
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     y.emplace_back(r_[i].size());
     for (double& v : y[i]) v = rng.normal();
     Eigen::Index k = 0;
     if (fitter_.model().has_scale()) y[i] += N_[i].col(k++) * (fitter_.noise().scatter * rng.normal());
     if (fitter_.model().has_gain()) y[i] += N_[i].col(k) * (fitter_.noise().gain_scatter * rng.normal());
+    for (std::size_t k = 0; k < shared_.size(); ++k) y[i] += G_[i].col(shared_[k]) * gain[k];
   }
   return y;
 }
@@ -217,6 +228,7 @@ std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& fo
   base.base = model.guess();
   base.log_scale.assign(d.trials.size(), 0.0);
   base.log_gain.assign(d.trials.size(), 0.0);
+  base.instrument.assign(d.outputs.size(), 1.0);
   const Screen screen(fitter, base);
   std::map<Effect, Score> best;
   std::set<Effect> lines;

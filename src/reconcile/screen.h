@@ -56,6 +56,8 @@ class Screen {
   std::vector<Eigen::VectorXd> r_;
   std::vector<Eigen::MatrixXd> G_, N_, C_, D_;  // D_ inverted
   Eigen::MatrixXd S_, common_;                  // inverted; with and without the records' own scales
+  std::vector<Eigen::Index> shared_;            // columns of G_ that are instruments' gains
+  Eigen::VectorXd instrument_;                  // pull of their prior where the fit stands
 };
 
 struct NotTestable {

@@ -384,7 +384,7 @@ double Search::material(const Fit& f, const Fit& against) const {
       // what one fit hides in the stiffness of single records counts as change, too
       const double hidden = std::abs(f.log_scale[i] - against.log_scale[i] - common / used), spread = (f.predicted[i][c].array() - f.predicted[i][c].mean()).matrix().norm();
       const double signal = std::max(spread, model_.data().rig == Rig::suture_pull ? f.predicted[i][c].norm() : 0.0) / std::sqrt(static_cast<double>(change.size()));
-      const double gain = std::abs(f.log_gain[i] - against.log_gain[i]) * f.predicted[i][c].norm() / std::sqrt(static_cast<double>(change.size()));
+      const double gain = std::abs(f.log_gain[i] - against.log_gain[i] + std::log(f.instrument[c] / against.instrument[c])) * f.predicted[i][c].norm() / std::sqrt(static_cast<double>(change.size()));
       most = std::max(most, (hidden * signal + gain) / fitter_.noise().output[c].full_scale / least);
       const Eigen::Index w = std::max<Eigen::Index>(2, change.size() / 8);
       for (Eigen::Index k = 0; k + w <= change.size(); k += w)

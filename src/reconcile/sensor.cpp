@@ -113,6 +113,7 @@ void RigModel::simulate(const Trial& t, const Setting& s, Eigen::MatrixXd& out) 
 void RigModel::sense(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
   apply_lag(t, s, out);
   if (has_gain()) out *= s.gain;
+  for (Eigen::Index c = 0; s.instrument != nullptr && c < out.cols(); ++c) out.col(c) *= s.instrument[c];
   apply_drift(t, s, session_start(), out);
   apply_saturation(s, out);
 }
