@@ -8,22 +8,6 @@
 namespace filum::reconcile {
 namespace {
 
-/// In place: AR(1) whitening of the columns, rows at samples `at`.
-void whiten(Eigen::Ref<Eigen::MatrixXd> m, const std::vector<int>& at, const OutputNoise& noise) {
-  double phi = noise.rho, scale = 1.0 / (noise.sigma * std::sqrt(1.0 - phi * phi));
-  int last = 1;
-  for (Eigen::Index k = m.rows() - 1; k > 0; --k) {
-    const int gap = at[static_cast<std::size_t>(k)] - at[static_cast<std::size_t>(k) - 1];
-    if (gap != last) {
-      phi = std::pow(noise.rho, gap);
-      scale = 1.0 / (noise.sigma * std::sqrt(1.0 - phi * phi));
-      last = gap;
-    }
-    m.row(k) = (m.row(k) - phi * m.row(k - 1)) * scale;
-  }
-  m.row(0) /= noise.sigma;
-}
-
 template <class F>
 auto& value_of(F& f, const Fitter::Global& g) {
   const auto i = static_cast<std::size_t>(g.index);

@@ -2,20 +2,14 @@
 // Weighted least squares of a rig with effects against records: bounded Levenberg-Marquardt (More 1978; Nocedal & Wright 2006,
 // ch. 10) on whitened residuals, with one stiffness (and output gain) per record as random effects with a normal prior, and the
 // free columns (polynomial, lines) projected out (variable projection, Golub & Pereyra 1973).
-// Noise is AR(1) per output: e_k = (r_k - rho^d r_(k-1)) / (sigma sqrt(1 - rho^2d)), d the number of samples since the last one.
+// Noise per output: noise.h.
 
 #include <functional>
 
 #include "reconcile/model.h"
+#include "reconcile/noise.h"
 
 namespace filum::reconcile {
-
-struct OutputNoise {
-  double sigma = 1.0;       // [SI], one standard deviation
-  double rho = 0.0;         // correlation of neighbouring samples
-  double full_scale = 1.0;  // [SI]
-  std::string from;         // stated, replicates, fast part
-};
 
 struct Noise {
   std::vector<OutputNoise> output;

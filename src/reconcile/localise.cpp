@@ -119,7 +119,7 @@ std::pair<int, std::string> band_of(double f) {
   return {k, k == 0 ? "below 0.1 Hz" : k == 5 ? "above 12 Hz" : text("%.2g to %.2g Hz", kEdges[k - 1], kEdges[k])};
 }
 
-/// Periodogram of a residual over what AR(1) noise has there: mean 1, variance 1.
+/// Periodogram of a residual over what the noise has there: mean 1, variance 1.
 void add_bands(const Eigen::VectorXd& r, const OutputNoise& noise, double step, Axis& axis) {
   std::vector<double> x;
   for (const double v : r) x.push_back(std::isfinite(v) ? v / noise.sigma : 0.0);
@@ -128,14 +128,17 @@ void add_bands(const Eigen::VectorXd& r, const OutputNoise& noise, double step, 
   fft.fwd(out, x);
   const auto n = static_cast<double>(x.size());
   for (std::size_t k = 0; k < x.size() / 2; ++k) {
-    const double f = static_cast<double>(k) / (n * step), colour = (1.0 - noise.rho * noise.rho) / (1.0 + noise.rho * noise.rho - 2.0 * noise.rho * std::cos(2.0 * std::numbers::pi * static_cast<double>(k) / n));
+    const double f = static_cast<double>(k) / (n * step), colour = noise.spectrum(2.0 * std::numbers::pi * static_cast<double>(k) / n);
     Sum& s = axis[band_of(f)];
     s.excess += (k == 0 ? 1.0 : 2.0) * (std::norm(out[k]) / n - colour);
     s.variance += 4.0 * colour * colour;
   }
 }
 
-double sample_variance(const OutputNoise& o) { return 2.0 * (1.0 + o.rho * o.rho) / (1.0 - o.rho * o.rho); }
+double sample_variance(const OutputNoise& o) {
+  const double slow = (1.0 - o.white) * o.rho;  // twice the sum of the squared correlations over all lags
+  return 2.0 + 4.0 * slow * slow / (1.0 - o.rho * o.rho);
+}
 
 void add_shares(const std::string& name, const Axis& axis, std::vector<Share>& out) {
   double all = 0.0;

@@ -190,7 +190,7 @@ std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::v
   for (const Proposal& p : menu(fitter.model().data())) {
     const Eigen::Index n = p.trial.time.size();
     const double each = (p.trial.time[n - 1] - p.trial.time[0]) / static_cast<double>(n - 1) / step;  // samples that one stands for
-    const double share = each * (1.0 - noise.rho) / (1.0 + noise.rho) / dispersion;
+    const double share = each / noise.slow() / dispersion;
     std::vector<Rival> on;
     for (std::size_t i = 0; i < rivals.size(); ++i) {
       on.push_back(rival_on(fitter, *rivals[i], p.trial, share));

@@ -205,13 +205,13 @@ void checks(const Result& r, std::ostringstream& s) {
 void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
   s << "<h2>Gap</h2><p>Root-mean-square residual over the noise's standard deviation; 1 is perfect.</p><table>" << row({"", "before", "after"}, "th")
     << row({"fitted trials", number(r.fit.before, 3), number(r.fit.after, 3)}) << row({"held out (" + r.held_out_how + ")", number(r.held_out.before, 3), number(r.held_out.after, 3)}) << "</table><table>"
-    << row({"output", "noise, 1 sd", "from", "correlation of neighbours", "samples", "worth, if independent", "full scale"}, "th");
+    << row({"output", "noise, 1 sd", "from", "correlation of neighbours", "share without memory", "samples", "worth, if independent", "full scale"}, "th");
   for (std::size_t c = 0; c < r.noise.output.size(); ++c) {
     const OutputNoise& o = r.noise.output[c];
     double samples = 0;
     for (const auto& trial : r.before.residual)
       if (c < trial.size()) samples += static_cast<double>(std::count_if(trial[c].begin(), trial[c].end(), [](double v) { return std::isfinite(v); }));
-    s << row({d.outputs[c], quantity(o.sigma, unit_of(d, d.outputs[c])), o.from, number(o.rho, 2), number(samples), number(std::floor(samples * (1.0 - o.rho) / (1.0 + o.rho))), quantity(o.full_scale, unit_of(d, d.outputs[c]))});
+    s << row({d.outputs[c], quantity(o.sigma, unit_of(d, d.outputs[c])), o.from, number((1.0 - o.white) * o.rho, 2), number(o.white, 2), number(samples), number(std::floor(samples / o.slow())), quantity(o.full_scale, unit_of(d, d.outputs[c]))});
   }
   s << "</table>";
   if (d.rig == Rig::tip_hold) s << "<p>The octave of the spectrum with most power beside what is named has twice the log likelihood of " << number(r.structure_before, 3) << " against noise.</p>\n";

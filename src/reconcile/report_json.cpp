@@ -56,7 +56,7 @@ Json noise_json(const Dataset& d, const Result& r) {
       if (k.name == d.outputs[c]) unit = k.unit;
     if (d.rig == Rig::spatula_press && d.outputs[c][0] == 'u') unit = "m";
     const OutputNoise& o = r.noise.output[c];
-    out[d.outputs[c]] = {{"value", o.sigma}, {"unit", unit}, {"from", o.from}, {"autocorrelation", o.rho}};
+    out[d.outputs[c]] = {{"value", o.sigma}, {"unit", unit}, {"from", o.from}, {"autocorrelation", (1.0 - o.white) * o.rho}, {"white", o.white}};
   }
   return out;
 }

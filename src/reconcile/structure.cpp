@@ -93,6 +93,8 @@ double line_remainder(const Fitter& fitter, const Fit& fit, std::size_t output) 
 
 }  // namespace
 
+constexpr double kWorth = 8.0;  // of twice the log likelihood, for a share of white noise: once in 200 sets where there is none
+
 Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
   Noise noise = fitter.noise();
   const Dataset& d = fitter.model().data();
@@ -117,7 +119,9 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
       const double most = 1.15 * std::sqrt(channel.noise * channel.noise + line_remainder(fitter, fit, c));
       o.sigma = std::max(std::clamp(std::sqrt(0.5 * v1), channel.noise, most), floor);
       o.rho = std::clamp(1.0 - 0.5 * v1 / (o.sigma * o.sigma), 0.0, 0.98);
-      // a variogram that keeps rising says the same more carefully; a slow misfit cannot lift it beyond the stated noise
+      o.white = 0.0;
+      // what replicates do not share is noise, slow or fast; a residual alone could be a slow misfit as well
+      if (replicates) o = likeliest(records, o, std::max(channel.noise, floor), std::max(most, floor), kWorth);
       continue;
     }
     o.from = replicates ? "replicates" : "fast part";
@@ -129,6 +133,8 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
       o.sigma = rms;
       o.rho = std::clamp(1.0 - 0.5 * v1 / (rms * rms), 0.0, 0.97);
     }
+    o.white = 0.0;
+    if (replicates) o = likeliest(records, o, floor, std::max(rms, floor), kWorth);
   }
   return noise;
 }
@@ -214,7 +220,7 @@ Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double hig
     if (i >= fit.residual.size() || fit.residual[i].empty()) continue;
     const Trial& t = d.trials[i];
     for (std::size_t c = 0; c < d.outputs.size(); ++c) {
-      // amplitude of the raw residual over the AR(1) spectrum at that frequency
+      // amplitude of the raw residual over the noise's spectrum at that frequency
       const OutputNoise& o = fitter.noise().output[c];
       const Eigen::VectorXd& r = fit.residual[i][c];
       const double dt = (t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1);
@@ -230,7 +236,7 @@ Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double hig
         const double det = ss * cc - sc * sc;
         if (det <= 1e-6 * (ss + cc) * (ss + cc)) continue;
         const double a = (sy * cc - cy * sc) / det, b = (cy * ss - sy * sc) / det;
-        const double psd = o.sigma * o.sigma * (1 - o.rho * o.rho) / (1 + o.rho * o.rho - 2 * o.rho * std::cos(w * dt));
+        const double psd = o.sigma * o.sigma * o.spectrum(w * dt);
         power[k] += (a * sy + b * cy) / psd;
       }
     }
