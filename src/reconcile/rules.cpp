@@ -3,7 +3,7 @@
 namespace filum::reconcile {
 
 // whoever adds a rule says it in the report, too
-static_assert(sizeof(Rules) == 38 * sizeof(double));
+static_assert(sizeof(Rules) == 40 * sizeof(double));
 static_assert(sizeof(HoldRules) == 14 * sizeof(double));
 
 std::vector<RuleText> listed(const Rules& k) {
@@ -16,7 +16,8 @@ std::vector<RuleText> listed(const Rules& k) {
           {"or of its gain from samples where the others are silent", k.silent_share}, {"which are at least this part", k.silent_least}, {"partial: sd left", k.partial_structure}, {"partial: share left", k.partial_share},
           {"partial: gain error asked for", k.gain_most}, {"structure left from which it counts as noise in all comparisons, sd", k.overdispersed}, {"refit of parameters that is a verdict: fall of chi-squared each", k.refit},
           {"masked share that hides an effect", k.masked}, {"squared signal to noise that shows one", k.testable}, {"effects screened at most", static_cast<double>(k.screen_most)}, {"with a share of the best score of", k.screen_share},
-          {"and a promised fall of chi-squared of", k.screen_least}, {"a line: price of an amplitude, BIC", k.line_price}, {"each of two lines: chance", k.line_seen}, {"cycles a record below which folded hum does not count", k.line_folded}};
+          {"and a promised fall of chi-squared of", k.screen_least}, {"a line: price of an amplitude, BIC", k.line_price}, {"each of two lines: chance", k.line_seen}, {"cycles a record below which folded hum does not count", k.line_folded},
+          {"harmonics of the motion on which folded hum does not count, if", k.line_harmonics}, {"repetitions that share its phase look so by a chance above", k.line_in_step}};
 }
 
 std::vector<RuleText> listed(const HoldRules& k, const Rules& common) {

@@ -42,6 +42,8 @@ struct Rules {
   double screen_least = 6.0;         // fall of chi2 that a score test must promise
   double line_seen = 0.05;           // chance below which each of two lines that are named together must stand out
   double line_folded = 6.0;          // cycles a record: where slow sampling folds hum to less, the record does not count for it
+  double line_harmonics = 12.0;      // of the motion's period: where sampling folds hum onto one of them (a feature a twelfth of the stroke wide has that many),
+  double line_in_step = 0.01;        // and the chance that repetitions which share its phase look as they do is more than this, they do not count either
   double line_price = 3.0;           // of BIC an amplitude of a line of free phase, in place of log n (search.cpp)
   double overdispersed = 3.0;        // standard deviations of structure left in the best fit from which it counts as noise in all comparisons
   double look_further = 3.5;         // standard deviations of structure left from which a further effect is looked for

@@ -9,6 +9,8 @@
 #include <set>
 #include <thread>
 
+#include "reconcile/in_step.h"
+
 namespace filum::reconcile {
 namespace {
 
@@ -95,17 +97,23 @@ void Search::fit_baseline() {
   base_ = fitter_.fit({}, loose.base, {}, {}, &loose);
 }
 
-/// The same fit without the records in which slow sampling folds this line onto what is slow anyway: a line must be seen in the others.
-Fit Search::separate(const Fit& from, double frequency) const {
-  Fit out = from;
-  for (std::size_t i = 0; i < out.residual.size(); ++i) {
-    const Trial& t = model_.data().trials[i];
-    const double span = t.time[t.samples() - 1] - t.time[0], rate = (t.samples() - 1) / span;
-    double folded = std::fmod(frequency, rate);
-    folded = std::min(folded, rate - folded);
-    if (folded * span < options_.rules.line_folded) out.residual[i].clear();
+/// Takes out the records in which slow sampling folds this line onto what is slow anyway, or onto a harmonic of the motion where its phase is the same in
+/// every repetition: a line must be seen in the others. Whether there were any.
+bool Search::separate(Fit& from, const Line& line) const {
+  const Dataset& d = model_.data();
+  std::vector<bool> out(d.trials.size()), harmonic(d.trials.size());
+  for (std::size_t i = 0; i < d.trials.size() && i < from.residual.size(); ++i) {
+    const Trial& t = d.trials[i];
+    if (from.residual[i].empty()) continue;
+    out[i] = folded(t, line.frequency) * (t.time[t.samples() - 1] - t.time[0]) < options_.rules.line_folded;
+    harmonic[i] = !out[i] && on_harmonic(d, t, line.frequency, static_cast<int>(options_.rules.line_harmonics));
   }
-  return out;
+  const Shared shared = shared_line(fitter_, from, line.frequency, harmonic);
+  const bool in_step = shared.saved == 0 || chi2_tail(shared.lost / line.background, shared.saved) > options_.rules.line_in_step;
+  bool any = false;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (out[i] || (harmonic[i] && in_step)) from.residual[i].clear(), any = true;
+  return any;
 }
 
 /// Bands in which an effect's lines are looked for [Hz].
@@ -122,8 +130,9 @@ Line Search::line_of(const Form& f, std::size_t line, const Fit& from) const {
   for (const auto& [lowest, high] : bands_of(f, line)) {
     const double low = std::max(lowest, 2.0 / span);
     if (low >= high) continue;
-    Line found = strongest_line(fitter_, from, low, high);
-    if (f.effect == Effect::mains_hum) found = strongest_line(fitter_, separate(from, found.frequency), low, high);
+    Fit left = from;
+    Line found = strongest_line(fitter_, left, low, high);
+    while (f.effect == Effect::mains_hum && found.gain > 0.0 && separate(left, found)) found = strongest_line(fitter_, left, low, high);
     if (found.gain > best.gain) best = found;
   }
   return best;

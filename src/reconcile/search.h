@@ -51,7 +51,7 @@ class Search {
   std::vector<Score> lines(const Fit& from) const;
   Line line_of(const Form& f, std::size_t line, const Fit& from) const;
   double places(const Form& f, std::size_t line) const;
-  Fit separate(const Fit& from, double frequency) const;
+  bool separate(Fit& from, const Line& line) const;
   void keep(std::vector<Fit> fits);
   void refresh(const Stretch& stretch);
   const Fit& fullest() const;

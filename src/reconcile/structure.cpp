@@ -245,7 +245,7 @@ Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double hig
   const auto top = [&](std::size_t k) { return (k == 0 || power[k] >= power[k - 1]) && (k + 1 == power.size() || power[k] >= power[k + 1]); };
   const double background = std::max(1.0, median(power) / std::max(1.0, columns - 0.7));
   for (std::size_t k = 0; k < power.size(); ++k)
-    if (frequency[k] >= low && frequency[k] <= high && top(k) && power[k] / background > best.gain) best = {frequency[k], power[k] / background, columns};
+    if (frequency[k] >= low && frequency[k] <= high && top(k) && power[k] / background > best.gain) best = {frequency[k], power[k] / background, columns, background};
   return best;
 }
 

@@ -36,6 +36,7 @@ struct Line {
   double frequency = 0.0;  // [Hz]
   double gain = 0.0;       // fall of chi2, against the local background
   int columns = 0;         // free amplitudes it costs
+  double background = 1.0; // power about it, over what the noise has there
 };
 /// Upper tail of chi-squared with an even number of degrees of freedom: exp(-x/2) sum (x/2)^j/j!, j below half of them.
 double chi2_tail(double x, int freedom);
