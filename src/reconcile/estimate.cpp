@@ -15,9 +15,11 @@ constexpr double kTwoSided = 1.96;
 constexpr double kForm = 0.02;   // relative, 1 sd: gain error of the sensor and the form of the law, which no fit can see
 constexpr double kWiden = 2.1;   // curvature understates the spread of nonlinear fits whose law is not quite the true one (development half: 90 to 93 % cover)
 
-Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high) {
+constexpr double kClock = 1e-4;  // relative, 1 sd: rate of a clock, all that a line's frequency owes to the instrument
+
+Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high, double form = kForm) {
   if (!std::isfinite(sd)) return {name, unit, value, low, high};
-  sd = logarithmic ? std::hypot(kWiden * sd, kForm) : std::hypot(kWiden * sd, kForm * std::abs(value));
+  sd = logarithmic ? std::hypot(kWiden * sd, form) : std::hypot(kWiden * sd, form * std::abs(value));
   if (logarithmic) return {name, unit, value, std::max(low, value * std::exp(-kTwoSided * std::min(sd, 20.0))), std::min(high, value * std::exp(kTwoSided * std::min(sd, 20.0)))};
   return {name, unit, value, std::max(low, value - kTwoSided * sd), std::min(high, value + kTwoSided * sd)};
 }
@@ -35,10 +37,10 @@ double line_blur(const Dataset& d, double frequency) {
   return std::expm1(std::min(0.5 * phase * phase, 3.0));
 }
 
-/// Amplitude of the line of a form, mean over records and outputs, from the free columns.
+/// Amplitude of the line of a form from the free columns: mean over the records, of the output in which it stands out most (each has its own unit).
 Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const std::vector<double>& p) {
   const Dataset& d = fitter.model().data();
-  std::vector<double> all;
+  std::vector<std::vector<double>> of(d.outputs.size());
   for (std::size_t i = 0; i < f.residual.size(); ++i)
     for (std::size_t c = 0; c < f.residual[i].size(); ++c) {
       // what the model without the line leaves, projected on the line
@@ -58,8 +60,13 @@ Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const s
         A += v * v.transpose();
         b += v * raw[c][n];
       }
-      all.push_back(A.ldlt().solve(b).norm());
+      of[c].push_back(A.ldlt().solve(b).norm());
     }
+  std::size_t at = 0;
+  const auto stands_out = [&](std::size_t c) { return median(of[c]) / fitter.noise().output[c].sigma; };
+  for (std::size_t c = 1; c < of.size(); ++c)
+    if (stands_out(c) > stands_out(at)) at = c;
+  const std::vector<double>& all = of[at];
   const double mid = median(all);
   double var = 0.0;
   for (const double a : all) var += (a - mid) * (a - mid) / std::max<double>(1.0, static_cast<double>(all.size()) - 1.0);
@@ -67,7 +74,7 @@ Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const s
   const double blur = line_blur(d, p[0]);
   std::string unit = "-";
   for (const ChannelInfo& c : info(d.rig).channels)
-    if (c.name == d.outputs[0]) unit = c.unit;
+    if (c.name == d.outputs[at]) unit = c.unit;
   return {"amplitude", unit, mid, std::max(0.0, mid - half), mid + half + blur * mid};
 }
 
@@ -103,7 +110,7 @@ std::vector<NamedEffect> effect_estimates(const Fitter& fitter, const Fit& fit, 
     NamedEffect named{form.effect, form.text, {}};
     for (std::size_t i = 0; i < form.params.size(); ++i, ++k) {
       const ParamSpec& p = form.params[i];
-      Estimate e = estimate(p.name, p.unit, fit.params[f][i], deviation(fit, k, dispersion), p.logarithmic, p.low, p.high);
+      Estimate e = estimate(p.name, p.unit, fit.params[f][i], deviation(fit, k, dispersion), p.logarithmic, p.low, p.high, form.effect == Effect::mains_hum ? kClock : kForm);
       if (p.times_baseline >= 0) {
         const double b = fit.base[static_cast<std::size_t>(p.times_baseline)];
         e.value *= b, e.low *= b, e.high *= b;

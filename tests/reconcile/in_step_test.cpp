@@ -58,18 +58,18 @@ Result solve(const std::function<double(double, int)>& more, int seed = 4) {
   std::string trials;
   for (int i = 0; i < 6; ++i) {
     std::ostringstream s;
-    s << "t,a,g,n\n";
+    s << "t,a,g,n,p\n";
     for (int k = 0; k <= 300; ++k) {
       const double t = 0.2 * k, a = i < 3 ? angle_at(t) : 28.0 - angle_at(t);
-      s << t << "," << a << ",1," << std::round(600.0 + 120.0 * a + more(t, i) + 20.0 * rng.normal()) << "\n";
+      s << t << "," << a << ",1," << std::round(600.0 + 120.0 * a + more(t, i) + 20.0 * rng.normal()) << "," << std::round(300.0 + 5.0 * rng.normal()) << "\n";
     }
     const std::string name = std::string(1, static_cast<char>('a' + i)) + ".csv";
     f.write(name, s.str());
     trials += "  - { file: " + name + ", protocol: { direction: " + (i < 3 ? "opening }, repeat: A }\n" : "closing }, repeat: B }\n");
   }
   f.write("experiment.yaml", "format: filum-experiment/1\ntitle: forceps\nsource: test\nrig: forceps-bridge\nspecimen: { bits: 14, reference: \"3.3 V\" }\n"
-          "model: { file: forceps/linear, free: [strain_gain, strain_offset] }\nchannels:\n  - { name: time, column: t, unit: s }\n"
-          "  - { name: angle, column: a, unit: deg, kind: input }\n  - { name: grip_force, column: g, unit: N, kind: input }\n  - { name: strain_counts, column: n, unit: count, kind: output }\ntrials:\n" + trials);
+          "model: { file: forceps/linear, free: [strain_gain, strain_offset, pressure_offset] }\nchannels:\n  - { name: time, column: t, unit: s }\n"
+          "  - { name: angle, column: a, unit: deg, kind: input }\n  - { name: grip_force, column: g, unit: N, kind: input }\n  - { name: strain_counts, column: n, unit: count, kind: output }\n  - { name: pressure_counts, column: p, unit: count, kind: output }\ntrials:\n" + trials);
   return reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
 }
 
@@ -85,6 +85,13 @@ TEST(InStep, WhatFollowsTheMotionIsNoHum) {
   const Result hum = solve([&](double t, int i) { return 40.0 * std::cos(2.0 * kPi * 50.1 * t + phase[i]); });
   ASSERT_EQ(hum.verdict, "effect") << hum.sentence;
   EXPECT_EQ(hum.effects[0].effect, Effect::mains_hum);
+  // the strain's line, not the mean with a pressure that has none; and a frequency is as sure as the clock, not as a gain
+  for (const Estimate& e : hum.effects[0].parameters) {
+    const double truth = e.name == "frequency" ? 50.1 : 40.0;
+    EXPECT_LE(e.low, truth) << e.name;
+    EXPECT_GE(e.high, truth) << e.name;
+    EXPECT_LT(truth - e.low, e.name == "frequency" ? 0.03 : 8.0) << e.name;  // upwards an amplitude is open to what a clock that strays would have blurred
+  }
 }
 
 }  // namespace
