@@ -4,6 +4,7 @@ import type { ClientMessage, Frame, Hello, Result, Scene, ServerMessage, Session
 import { FieldView } from "./ui/field_view";
 import { h, setText } from "./ui/dom";
 import { Help } from "./ui/help";
+import { focusUses } from "./ui/microscope_keys";
 import { icon } from "./ui/pictures";
 import { Sound } from "./ui/sound";
 
@@ -174,7 +175,7 @@ export class App {
     if (event.key === "?") { event.preventDefault(); this.help.toggle(); return; }
     if (this.help.element.open) return;
     if (this.page?.onkey?.(event)) { event.preventDefault(); return; }
-    if (event.code === "KeyM" && !event.ctrlKey && !event.altKey) this.toggleSound();
+    if (event.code === "KeyM" && !event.ctrlKey && !event.altKey && !focusUses(event)) this.toggleSound();
   }
 
   private toggleSound(): void { this.sound.toggle(); this.showSound(); }

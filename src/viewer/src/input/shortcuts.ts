@@ -48,7 +48,7 @@ export const kShortcuts: ShortcutGroup[] = [
     ],
   },
   {
-    title: "Replay", shortcuts: [
+    title: "Replay (unless a slider of the microscope or a list is in focus)", shortcuts: [
       { keys: "Space", does: "play or pause" },
       { keys: "← →", does: "one second back or on;  with Shift: five" },
       { keys: "Home  End", does: "to the start, to the end" },

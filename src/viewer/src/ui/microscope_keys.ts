@@ -1,9 +1,25 @@
 // Keys of the microscope, the same on the live page and in a replay.
 import type { FieldView } from "./field_view";
 
+const kPressing = [" ", "Enter"], kChoosing = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], kSliding = [...kChoosing, "Home", "End", "PageUp", "PageDown"];
+
+/// True where the control in focus does something of its own with the key; then no page takes it away.
+export function focusUses(event: KeyboardEvent, control: Element | null = document.activeElement): boolean {
+  if (event.ctrlKey || event.altKey || event.metaKey) return false;
+  if (control instanceof HTMLSelectElement) return kPressing.includes(event.key) || kSliding.includes(event.key) || /^[a-z]$/i.test(event.key); // a letter finds a line
+  if (control instanceof HTMLButtonElement) return kPressing.includes(event.key);
+  if (control instanceof HTMLAnchorElement) return kPressing.includes(event.key); // Space on a link scrolls the page
+  if (!(control instanceof HTMLInputElement)) return false;
+  switch (control.type) {
+    case "range": return kSliding.includes(event.key);
+    case "radio": return event.key === " " || kChoosing.includes(event.key);
+    default: return event.key === " "; // a box to tick; text is seen to before any page
+  }
+}
+
 /// True when the key was one of the microscope's.
 export function microscopeKey(view: FieldView, event: KeyboardEvent, activeTool: number, panels: HTMLElement): boolean {
-  if (event.ctrlKey || event.altKey || event.metaKey) return false;
+  if (event.ctrlKey || event.altKey || event.metaKey || focusUses(event)) return false;
   switch (event.key) {
     case "+": case "=": view.zoom(1); return true;
     case "-": case "−": view.zoom(-1); return true;

@@ -5,7 +5,7 @@ import type { LineState } from "../net/connection";
 import { clear, h, setText } from "./dom";
 import { opticsBar } from "./field_view";
 import { clock, quantity, words } from "./format";
-import { microscopeKey, microscopeMouse } from "./microscope_keys";
+import { focusUses, microscopeKey, microscopeMouse } from "./microscope_keys";
 import { BrainPanel } from "./brain_panel";
 import { ForcePanel, StepPanel, WarningList } from "./panels";
 import { TissuePanel } from "./tissue_panel";
@@ -78,9 +78,9 @@ export class ReplayPage implements Page {
 
   onkey(event: KeyboardEvent): boolean {
     const step = event.shiftKey ? 5 : 1, now = this.app.replay?.time ?? 0, end = this.app.replay?.duration ?? 0;
-    const onButton = document.activeElement instanceof HTMLButtonElement || document.activeElement instanceof HTMLAnchorElement;
+    if (document.activeElement !== this.scrub && focusUses(event)) return false; // the line of time seeks by whole seconds, as the page does
     switch (event.key) {
-      case " ": if (onButton) return false; this.toggle(); return true;
+      case " ": this.toggle(); return true;
       case "ArrowLeft": this.seek(now - step); return true;
       case "ArrowRight": this.seek(now + step); return true;
       case "Home": this.seek(0); return true;
