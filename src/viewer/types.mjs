@@ -1,5 +1,5 @@
-// Generates src/messages.d.ts from the message schema of the server. `npm run types` after a change of the schema; a unit test
-// fails while the committed file is behind.
+// Generates src/messages.d.ts from the message schema of the server: part of every `npm run build`, `npm run types` by itself.
+// The file is not kept in the repository, so that it cannot fall behind the schema.
 import { readFile, writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import { compile } from "json-schema-to-typescript";
