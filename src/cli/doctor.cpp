@@ -152,6 +152,16 @@ Check check_handle(const DoctorOptions& o) {
   return {"handle", sound, detail, sound ? "" : "Use a shorter cable, another port or an isolator."};
 }
 
+const char* advice_for(StoreTrouble trouble) {
+  switch (trouble) {
+    case StoreTrouble::kNoFolder: return "Give a folder, or the name of one that can be made, with --store.";
+    case StoreTrouble::kNotWritable: return "Choose a folder that you may write with --store, or ask its owner for the right.";
+    case StoreTrouble::kNewer: return "Use the newer Filum that made it, or choose another folder with --store.";
+    case StoreTrouble::kDatabase: break;
+  }
+  return "End other programs that use the store, see that its files may be written and that the disk has room.";
+}
+
 Check check_store(const std::string& folder) {
   try {
     const Store store(folder);
@@ -164,8 +174,8 @@ Check check_store(const std::string& folder) {
     if (!problems.empty()) return {"store", false, detail + "; " + problems[0].id + ": " + problems[0].what, problems[0].advice};
     const bool room = free_gb > 0.5;
     return {"store", room, detail, room ? "" : "Make room on the disk: a session takes a few megabytes a minute."};
-  } catch (const InputError& error) {
-    return {"store", false, error.what(), "Choose a folder that you may write with --store."};
+  } catch (const StoreError& error) {
+    return {"store", false, error.what(), advice_for(error.trouble)};
   }
 }
 
@@ -205,7 +215,7 @@ int run(const DoctorOptions& o, const Streams& io) {
       check_timer(),
       guarded("speed", [&] { return check_speed(o.common.root); }),
       check_devices(o.serial),
-      guarded("store", [&] { return check_store(o.store.empty() ? default_store_folder() : o.store); }),
+      guarded("store", [&] { return check_store(o.store.empty() ? default_store_folder() : o.store); }, "Move the file named out of the store, or choose another folder with --store."),
       check_viewer(o.viewer),
       check_files(o.common.root),
       check_versions(),

@@ -120,14 +120,19 @@ struct Store::Impl {
   void check_format(const std::string& where) {
     int format = 0;
     *sql << "SELECT max(format) FROM filum_store", soci::into(format);
-    if (format > kStoreFormat)
-      throw InputError(where, "format", std::to_string(format) + ", made by a newer Filum",
-                       "a format up to " + std::to_string(kStoreFormat));
+    if (format > kStoreFormat) throw_newer(where, format);
+  }
+
+  [[noreturn]] static void throw_newer(const std::string& where, int format) {
+    throw StoreError(StoreTrouble::kNewer, where, "format", std::to_string(format) + ", made by a newer Filum",
+                     "a format up to " + std::to_string(kStoreFormat));
   }
 
   void open_own_index() {
     const std::string file = index_path(folder).string();
     const bool there = fs::exists(file);
+    const database::Header header = database::read_header(file);
+    if (header.application_id == database::kIndexId && header.format > kStoreFormat) throw_newer(file, header.format);
     if (there) database::require_format(file, "the index of a Filum store", database::kIndexId, kStoreFormat);
     sql = std::make_unique<soci::session>(soci::sqlite3, database::connection_string(file, false));
     if (there && database::pragma(*sql, "quick_check") != "ok")
@@ -167,7 +172,8 @@ struct Store::Impl {
     try {
       return action();
     } catch (const soci::soci_error& error) {
-      throw InputError(folder, "store", database::reason(error), "a store that can be read and written");
+      throw StoreError(StoreTrouble::kDatabase, folder, "store", database::reason(error),
+                       "a store that can be read and written");
     }
   }
 };
@@ -178,9 +184,10 @@ Store::Store(const std::string& folder, const std::string& index_connection)
   impl_->own_index = index_connection.empty();
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw InputError(folder, "store", error.message(), "a folder");
+  if (!fs::is_directory(folder)) throw StoreError(StoreTrouble::kNoFolder, folder, "store", error ? error.message() : "a file", "a folder");
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw InputError(folder, "store", "a folder that cannot be written", "a folder that can be written");
+    throw StoreError(StoreTrouble::kNotWritable, folder, "store", "a folder that cannot be written",
+                     "a folder that can be written");
   if (!impl_->own_index) {
     impl_->guarded([&] {
       impl_->sql = std::make_unique<soci::session>(index_connection);
@@ -192,8 +199,9 @@ Store::Store(const std::string& folder, const std::string& index_connection)
   bool damaged = false;
   try {
     impl_->open_own_index();
-  } catch (const InputError& problem) {
-    if (problem.field == "format") throw;
+  } catch (const StoreError&) {
+    throw;
+  } catch (const InputError&) {
     damaged = true;
   } catch (const soci::soci_error&) {
     damaged = true;

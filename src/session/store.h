@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "session/records.h"
 
 namespace filum {
@@ -33,10 +34,20 @@ struct StoreProblem {
   std::string advice;
 };
 
+/// Why a store cannot be opened: each asks for something else of the user.
+enum class StoreTrouble { kNoFolder, kNotWritable, kNewer, kDatabase };
+
+struct StoreError : InputError {
+  StoreError(StoreTrouble trouble, const std::string& file, const std::string& field, const std::string& value,
+             const std::string& expected)
+      : InputError(file, field, value, expected), trouble(trouble) {}
+  StoreTrouble trouble;
+};
+
 class Store {
  public:
   /// Opens or creates. A damaged index is set aside, built anew from the recordings, and reported by check().
-  /// Throws InputError when the folder cannot be made or written or the index was made by a newer program.
+  /// Throws StoreError when the folder cannot be made or written or the index was made by a newer program.
   /// Not thread-safe: one thread owns a Store.
   explicit Store(const std::string& folder, const std::string& index_connection = "");
   ~Store();

@@ -1,12 +1,16 @@
 // filum doctor: every check says what it found, and what to do where it is not content. Cores, timer and speed depend on the machine.
 
 #include <gtest/gtest.h>
+#include <soci/sqlite3/soci-sqlite3.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "program_call.h"
+#include "session/database.h"
+#include "session/store.h"
 #include "tests/devices/simulated_handle.h"
 #include "tests/session/synthetic.h"
 
@@ -58,6 +62,36 @@ TEST_F(Doctor, WhatIsMissingIsSaidWithAdvice) {
   EXPECT_NE(found["viewer"]["advice"].get<std::string>().find("./filum"), std::string::npos);
   EXPECT_NE(found["files"]["advice"].get<std::string>().find("--root"), std::string::npos);
   EXPECT_NE(found["devices"]["detail"].get<std::string>().find(folder_.file("port")), std::string::npos);
+}
+
+TEST_F(Doctor, AStoreOfANewerProgramIsNotCalledUnwritable) {
+  std::filesystem::create_directory(folder_.file("store"));
+  {
+    soci::session sql(soci::sqlite3, database::connection_string(folder_.file("store/index.sqlite"), false));
+    sql << "CREATE TABLE filum_store (format INTEGER NOT NULL)";
+    database::mark(sql, database::kIndexId, kStoreFormat + 1);
+  }
+  const Json found = checks()["store"];
+  EXPECT_FALSE(found["ok"].get<bool>());
+  EXPECT_NE(found["detail"].get<std::string>().find("made by a newer Filum"), std::string::npos) << found;
+  EXPECT_NE(found["advice"].get<std::string>().find("newer Filum"), std::string::npos) << found;
+  EXPECT_EQ(found["advice"].get<std::string>().find("may write"), std::string::npos) << found;
+  EXPECT_EQ(database::read_header(folder_.file("store/index.sqlite")).format, kStoreFormat + 1);
+}
+
+TEST_F(Doctor, AStoreThatIsAFileIsNotCalledUnwritable) {
+  std::ofstream(folder_.file("store")) << "no folder";
+  const Json found = checks()["store"];
+  EXPECT_NE(found["advice"].get<std::string>().find("Give a folder"), std::string::npos) << found;
+}
+
+TEST_F(Doctor, AStoreThatMayNotBeWrittenSaysSo) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  std::filesystem::create_directory(folder_.file("store"));
+  std::filesystem::permissions(folder_.file("store"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  const Json found = checks()["store"];
+  EXPECT_NE(found["advice"].get<std::string>().find("may write"), std::string::npos) << found;
+  std::filesystem::permissions(folder_.file("store"), std::filesystem::perms::owner_all);
 }
 
 TEST_F(Doctor, AHandleIsListenedTo) {
