@@ -101,6 +101,21 @@ TEST(Store, AnIndexFromANewerProgramIsRefusedAndLeftAlone) {
   EXPECT_EQ(database::read_header(folder.file("s/index.sqlite")).format, 9);
 }
 
+TEST(Store, AnIndexWithoutAFormatIsBuiltAnew) {
+  const Folder folder;
+  {
+    Store store(folder.file("s"));
+    record_one(store, "A17");
+  }
+  {
+    soci::session sql(soci::sqlite3, database::connection_string(folder.file("s/index.sqlite"), false));
+    sql << "PRAGMA user_version = 0";
+  }
+  const Store store(folder.file("s"));
+  EXPECT_EQ(store.list().size(), 1u);
+  EXPECT_EQ(database::read_header(folder.file("s/index.sqlite")).format, kStoreFormat);
+}
+
 TEST(Store, CheckFindsWhatIsMissingAndWhatIsDamaged) {
   const Folder folder;
   Store store(folder.file("s"));
