@@ -43,7 +43,7 @@ TEST(Calibrate, ReadingsOnALineGiveAFileThatForcepsRead) {
   EXPECT_EQ(d["angle"]["unit"], "rad");
   EXPECT_NEAR(d["force"]["gain"].get<double>(), 1.0 / 900.0, 1e-9);
   const ForcepsCalibration made = ForcepsCalibration::load(file);
-  EXPECT_NEAR(made.angle(static_cast<int>(angle_count(10))), 10 * kDegree, 1e-6);
+  EXPECT_NEAR(made.angle(static_cast<std::uint16_t>(angle_count(10))), 10 * kDegree, 1e-6);
   EXPECT_EQ(made.identity, 7u);
   EXPECT_EQ(made.sensor, "S-1");
 }
