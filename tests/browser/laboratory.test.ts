@@ -57,7 +57,7 @@ describe.skipIf(!hasTrainer)("laboratory", () => {
     await page.click("[data-start=long]");
     await page.waitForSelector("progress:not([hidden])");
     await page.locator(".cancel").press("Enter");
-    await until(() => page.textContent(".reconcile [role=status]"), (text) => (text ?? "").includes("cancelled"), "it is cancelled");
+    await until(() => page.textContent(".reconcile > [role=status]"), (text) => (text ?? "").includes("cancelled"), "it is cancelled");
     expect(await page.locator("[data-report=long]").count()).toBe(0);
     expect(opened.trouble).toEqual([]);
   });
