@@ -38,19 +38,25 @@ int run_seed(const std::vector<std::uint8_t>& seed, filum::Rng& rng) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: %s FOLDER_WITH_SEEDS\n", argv[0]);
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: %s SEED_OR_FOLDER...\n", argv[0]);
     return 2;
   }
+  namespace fs = std::filesystem;
   filum::Rng rng(7);
   int seeds = 0;
   int runs = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    const std::vector<std::uint8_t> seed{std::istreambuf_iterator<char>(file),
-                                         std::istreambuf_iterator<char>()};
-    runs += run_seed(seed, rng);
+  const auto run_file = [&](const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    runs += run_seed({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, rng);
     ++seeds;
+  };
+  for (int i = 1; i < argc; ++i) {
+    if (fs::is_directory(argv[i])) {
+      for (const auto& entry : fs::directory_iterator(argv[i])) run_file(entry.path());
+    } else if (fs::is_regular_file(argv[i])) {
+      run_file(argv[i]);
+    }
   }
   std::printf("%d seeds, %d runs\n", seeds, runs);
   return seeds > 0 ? 0 : 1;

@@ -61,13 +61,17 @@ void copy_values(const nifti_image& image, std::vector<float>& to) {
     for (float& v : to) v = v * image.scl_slope + image.scl_inter;
 }
 
-/// What the file of the voxels holds, unpacked: the library fills up what is missing with zeros. [bytes]
-std::size_t bytes_in(const std::string& file) {
+/// What the file of the voxels holds, unpacked, as far as it is asked for: the library fills up what is missing with zeros. [bytes]
+std::size_t bytes_in(const std::string& file, std::size_t wanted) {
   const znzFile stream = znzopen(file.c_str(), "rb", nifti_is_gzfile(file.c_str()));
   if (znz_isnull(stream)) return 0;
   std::vector<char> buffer(1 << 16);
   std::size_t total = 0;
-  while (const std::size_t got = znzread(buffer.data(), 1, buffer.size(), stream)) total += got;
+  while (total < wanted) {
+    const std::size_t got = znzread(buffer.data(), 1, buffer.size(), stream);
+    if (got == 0) break;
+    total += got;
+  }
   znzFile closing = stream;
   Xznzclose(&closing);
   return total;
@@ -82,11 +86,13 @@ Volume read_nifti(const std::string& path) {
   const std::unique_ptr<nifti_1_header, Free> header(nifti_read_header(path.c_str(), &swapped, 0));
   if (!header) throw InputError(path, "header", "too short or no NIfTI name", "348 bytes of a NIfTI-1 header in .nii, .nii.gz or .hdr");
   check_header(path, *header);
-  const std::unique_ptr<nifti_image, Free> image(nifti_image_read(path.c_str(), 1));
-  if (!image || image->data == nullptr) throw InputError(path, "data", "fewer than the header says", "every voxel");
+  const std::unique_ptr<nifti_image, Free> image(nifti_image_read(path.c_str(), 0));
+  if (!image || image->iname == nullptr) throw InputError(path, "data", "no file", "the file of the voxels");
+  // before room is made for the voxels: a header of 348 bytes can promise 64 GB
   const std::size_t needed = static_cast<std::size_t>(image->iname_offset) + static_cast<std::size_t>(image->nvox) * static_cast<std::size_t>(image->nbyper);
-  if (const std::size_t there = bytes_in(image->iname); there < needed)
+  if (const std::size_t there = bytes_in(image->iname, needed); there < needed)
     throw InputError(path, "data", std::to_string(there) + " bytes", std::to_string(needed) + " bytes, as the header says");
+  if (nifti_image_load(image.get()) != 0 || image->data == nullptr) throw InputError(path, "data", "fewer than the header says", "every voxel");
   Volume v;
   v.size = {image->nx, image->ny, image->nz};
   v.value.resize(static_cast<std::size_t>(v.size[0]) * static_cast<std::size_t>(v.size[1]) * static_cast<std::size_t>(v.size[2]));

@@ -10,19 +10,11 @@
 #include <thread>
 #include <vector>
 
+#include "cli/calibration_plan.h"
 #include "devices/calibration_file.h"
 #include "devices/calibration_guide.h"
 
 namespace filum {
-
-struct CalibrationPlan {
-  std::string port, root, folder;             // folder: where the file goes
-  std::string sensor = "unknown", name = "forceps";
-  std::vector<double> angles = {0, 5, 10, 15, 20, 25};       // [deg], growing
-  std::vector<double> forces = {0, 0.2, 0.5, 1.0, 2.0, 3.0};  // [N], growing
-  int repeats = 2;
-  unsigned identity = 1;                      // as it is stored in the handle
-};
 
 class CalibrationSession {
  public:
@@ -55,8 +47,5 @@ class CalibrationSession {
   std::unique_ptr<Reader> reader_;
   std::thread thread_;
 };
-
-/// From a page's wish: sensor, name, identity, repeats, angles [deg], forces [N]; what is absent keeps its default. Throws InputError.
-CalibrationPlan calibration_plan(const std::string& json, std::string port, std::string root, std::string folder);
 
 }  // namespace filum

@@ -1,12 +1,10 @@
 #include "cli/camera_session.h"
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
+#include "cli/requests.h"
 
 namespace filum {
 namespace {
@@ -14,40 +12,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const Json& wish, const char* key, const char* expected) {
-  throw InputError("camera", key, wish[key].dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 80), expected);
-}
-
 std::vector<std::string> arguments(const CameraPlan& p) {
   return {p.program, "guide", "--source", p.source, "--folder", p.folder, "--square", std::to_string(p.square), "--name", p.name};
 }
 
 }  // namespace
-
-CameraPlan camera_plan(const std::string& text, const std::string& program, const std::string& folder, const std::string& fixed_source) {
-  if (program.empty()) throw InputError("camera", "program", "none", "filum_camera beside this program (built where OpenCV is)");
-  const Json wish = Json::parse(text, nullptr, false);
-  if (!wish.is_object()) throw InputError("camera", "body", text.substr(0, 80), "a JSON object");
-  CameraPlan plan;
-  plan.program = program;
-  plan.folder = folder;
-  if (wish.contains("source")) {
-    if (!wish["source"].is_number_integer() || wish["source"] < 0 || wish["source"] > 99) refuse(wish, "source", "number of a camera, 0 to 99");
-    plan.source = std::to_string(wish["source"].get<int>());
-  }
-  if (!fixed_source.empty()) plan.source = fixed_source;
-  if (wish.contains("square")) {
-    if (!wish["square"].is_number() || !(wish["square"] >= 1.0 && wish["square"] <= 200.0)) refuse(wish, "square", "1 to 200 mm");
-    plan.square = wish["square"].get<double>();
-  }
-  if (wish.contains("name")) {
-    if (!wish["name"].is_string() || wish["name"].get<std::string>().size() > 40) refuse(wish, "name", "up to 40 letters");
-    plan.name = wish["name"].get<std::string>();
-    const auto allowed = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.' || c == ' '; };
-    if (plan.name.empty() || plan.name[0] == '-' || !std::all_of(plan.name.begin(), plan.name.end(), allowed)) refuse(wish, "name", "letters, digits, dots, blanks and dashes");
-  }
-  return plan;
-}
 
 std::string camera_program() {
   std::error_code error;
@@ -92,7 +61,7 @@ void CameraSession::work() {
 
 Json CameraSession::status() const {
   const std::lock_guard lock(guard_);
-  Json json = Json::parse(said_, nullptr, false);
+  Json json = parsed_json(said_);
   if (!json.is_object()) json = {{"state", "starting"}};
   if (!failed_.empty()) {
     json["state"] = "failed";

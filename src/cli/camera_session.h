@@ -11,17 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "cli/camera_plan.h"
 #include "cli/child_process.h"
 
 namespace filum {
-
-struct CameraPlan {
-  std::string program;       // path of filum_camera
-  std::string source = "0";  // number of a camera; a video only from the command line
-  std::string folder;        // for the preview and the calibration
-  std::string name = "camera";
-  double square = 10.0;      // [mm]
-};
 
 class CameraSession {
  public:
@@ -48,10 +41,6 @@ class CameraSession {
   ChildProcess child_;
   std::thread thread_;
 };
-
-/// From a page's wish: source (number of a camera), square [mm], name; what is absent keeps its default. Throws InputError. `fixed_source`: of
-/// the command line, empty if none; then the page's is not taken.
-CameraPlan camera_plan(const std::string& json, const std::string& program, const std::string& folder, const std::string& fixed_source);
 
 /// Path of filum_camera beside this program; empty where it was not built.
 std::string camera_program();

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "cli/requests.h"
 
 namespace filum {
 namespace {
@@ -28,17 +29,17 @@ const std::string& plain(const Json& object, const char* key) {
   if (!object.is_object() || !object.contains(key) || !object[key].is_string()) throw InputError("upload", key, "nothing", "a name");
   const auto& name = object[key].get_ref<const std::string&>();
   if (name.empty() || name.size() > 64 || name[0] == '.' || !std::all_of(name.begin(), name.end(), allowed))
-    throw InputError("upload", key, object[key].dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 80), "1 to 64 letters, digits, dots, - and _, no dot first");
+    throw InputError("upload", key, json_shown(object[key]), "1 to 64 letters, digits, dots, - and _, no dot first");
   return name;
 }
 
 std::size_t size_of(const Json& file) {
-  if (!file.contains("bytes") || !file["bytes"].is_number_unsigned()) throw InputError("upload", "bytes", file.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 80), "the file's size");
+  if (!file.contains("bytes") || !file["bytes"].is_number_unsigned()) throw InputError("upload", "bytes", json_shown(file), "the file's size");
   return file["bytes"].get<std::size_t>();
 }
 
 unsigned long number_in(const std::string& body) {
-  const Json json = Json::parse(body, nullptr, false);
+  const Json json = parsed_json(body);
   if (!json.is_object() || !json.contains("upload") || !json["upload"].is_number_unsigned()) throw InputError("upload", "upload", "nothing", "the number of an upload");
   return json["upload"].get<unsigned long>();
 }
@@ -98,7 +99,7 @@ Json DatasetUpload::status() const {
 }
 
 Json DatasetUpload::begin(const std::string& body) {
-  const Json json = Json::parse(body, nullptr, false);
+  const Json json = parsed_json(body);
   const std::string dataset = plain(json, "dataset");
   if (!json.contains("files") || !json["files"].is_array() || json["files"].empty() || json["files"].size() > kUploadFiles)
     throw InputError("upload", "files", "none, or too many", "1 to " + std::to_string(kUploadFiles) + " files");

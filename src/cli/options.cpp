@@ -16,8 +16,6 @@ void add_common(CLI::App& command, CommonOptions& options) {
   command.add_flag("--json", options.json, "Print one JSON document and nothing else");
 }
 
-std::string json_text(const nlohmann::ordered_json& document) { return document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); }
-
 void print_json(std::FILE* out, const nlohmann::ordered_json& document) {
   const std::string text = json_text(document);
   std::fwrite(text.data(), 1, text.size(), out);

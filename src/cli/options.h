@@ -7,6 +7,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "cli/requests.h"
+
 namespace CLI {
 class App;
 }
@@ -51,8 +53,6 @@ void add_mesh(CLI::App& app, Action& action);
 void add_common(CLI::App& command, CommonOptions& options);
 void add_root(CLI::App& command, CommonOptions& options);
 
-/// One line; bytes that are no text do not break it.
-std::string json_text(const nlohmann::ordered_json& document);
 void print_json(std::FILE* out, const nlohmann::ordered_json& document);
 
 const char* version();

@@ -4,7 +4,7 @@
 
 #include "analysis/agreement.h"
 #include "base/error.h"
-#include "cli/options.h"
+#include "cli/requests.h"
 
 namespace filum {
 namespace {
@@ -21,22 +21,6 @@ Json marks_json(const Rating& rating) {
 
 /// The scale that a result carries; null where there is none.
 Json scale_of(const Json& result) { return result.is_object() && result.contains("scale") ? result["scale"] : Json(nullptr); }
-
-std::vector<ItemMark> marks_of(const Json& scale, const Json& given) {
-  if (!given.is_object()) throw InputError("rating", "marks", "nothing", "points for every item");
-  const int most = scale.at("most").get<int>();
-  std::vector<ItemMark> marks;
-  for (const Json& item : scale.at("items")) {
-    const auto name = item.at("name").get<std::string>();
-    const std::string expected = "a whole number from 0 to " + std::to_string(most);
-    if (!given.contains(name) || !given[name].is_number_integer()) throw InputError("rating", name, given.contains(name) ? given[name].dump().substr(0, 40) : "nothing", expected);
-    const auto points = given[name].get<std::int64_t>();
-    if (points < 0 || points > most) throw InputError("rating", name, std::to_string(points), expected);
-    marks.push_back({name, static_cast<int>(points)});
-  }
-  if (given.size() != marks.size()) throw InputError("rating", "marks", std::to_string(given.size()) + " items", "the items of the scale");
-  return marks;
-}
 
 std::vector<ItemMark> estimates_of(const Json& scale) {
   std::vector<ItemMark> marks;
@@ -70,12 +54,8 @@ Json RatingDesk::status(const std::string& session, const Json& result) const {
 void RatingDesk::put(const std::string& session, const Json& result, const std::string& body) {
   if (!ratings_) throw InputError("rating", "store", trouble_, "a file of ratings that can be written");
   const Json scale = scale_of(result);
-  if (scale.is_null()) throw InputError("rating", "scale", "none", "a session of a task that has a rating scale");
-  const Json wish = Json::parse(body, nullptr, false);
-  if (!wish.is_object() || !wish.contains("rater") || !wish["rater"].is_string()) throw InputError("rating", "rater", "nothing", "the rater's code");
-  Rating r{session, result.value("task", ""), scale.at("name").get<std::string>(), wish["rater"].get<std::string>(), "", {}};
+  Rating r = requested_rating(session, result.value("task", ""), scale, body);
   if (r.rater == kSimulatorCode) throw InputError("rating", "rater", r.rater, "a code that is not the simulator's");
-  r.marks = marks_of(scale, wish.contains("marks") ? wish["marks"] : Json(nullptr));
   const bool first = ratings_->list(session).empty();
   ratings_->put(r);
   r.marks = estimates_of(scale);
@@ -90,22 +70,21 @@ std::optional<std::string> RatingDesk::get(std::string_view path) {
     json["trouble"] = trouble_;
     return json_text(json);
   }
-  if (!path.starts_with(kRatings)) return std::nullopt;
-  const std::string session(path.substr(kRatings.size()));
-  const auto text = result_of_(session);
-  if (!text) return std::nullopt;
-  const Json result = Json::parse(*text, nullptr, false);
-  return json_text(status(session, result.is_object() ? result : Json::object()));
+  return answer(path, nullptr);
 }
 
-std::optional<std::string> RatingDesk::post(std::string_view path, const std::string& body) {
+std::optional<std::string> RatingDesk::post(std::string_view path, const std::string& body) { return answer(path, &body); }
+
+/// The session's ratings, after those of `body` where there is one. A result comes out of a recording, which may be damaged.
+std::optional<std::string> RatingDesk::answer(std::string_view path, const std::string* body) {
   if (!path.starts_with(kRatings)) return std::nullopt;
   const std::string session(path.substr(kRatings.size()));
   const auto text = result_of_(session);
   if (!text) return std::nullopt;
   try {
-    const Json result = Json::parse(*text);
-    put(session, result, body);
+    Json result = parsed_json(*text);
+    if (!result.is_object()) result = Json::object();
+    if (body != nullptr) put(session, result, *body);
     return json_text(status(session, result));
   } catch (const InputError& error) {
     return json_text({{"refused", error.field + ": found " + error.value + ", expected " + error.expected}});

@@ -27,6 +27,7 @@ class RatingDesk {
   std::optional<Document> document(std::string_view path);
 
  private:
+  std::optional<std::string> answer(std::string_view path, const std::string* body);
   nlohmann::ordered_json status(const std::string& session, const nlohmann::ordered_json& result) const;
   void put(const std::string& session, const nlohmann::ordered_json& result, const std::string& body);
 

@@ -33,7 +33,7 @@ std::string whole(const fs::path& file) {
 
 /// What a list shows of a report; null where there is none.
 Json summary_of(const fs::path& folder) {
-  const Json report = Json::parse(whole(folder / "report.json"), nullptr, false);
+  const Json report = parsed_json(whole(folder / "report.json"));
   if (!report.is_object() || !report.contains("verdict")) return nullptr;
   Json effects = Json::array();
   for (const Json& e : report["effects"]) effects.push_back(e["name"]);

@@ -125,7 +125,7 @@ std::string result_message(const Result& result, const std::string& session) {
 }
 
 std::string result_message(const std::string& stored_json, const std::string& session) {
-  Json result = Json::parse(stored_json, nullptr, false);
+  Json result = parsed_json(stored_json);
   return result.is_object() ? message_of(std::move(result), session) : std::string();
 }
 

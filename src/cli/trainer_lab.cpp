@@ -20,24 +20,6 @@ bool take(std::string_view& path, std::string_view prefix) {
   return true;
 }
 
-std::string field(const std::string& body, const char* name) {
-  const Json json = Json::parse(body, nullptr, false);
-  if (!json.is_object() || !json.contains(name) || !json[name].is_string()) throw InputError("request", name, "nothing", "a text");
-  return json[name].get<std::string>();
-}
-
-/// Identifiers of a list in a request.
-std::vector<std::string> names(const std::string& body, const char* name) {
-  const Json json = Json::parse(body, nullptr, false);
-  if (!json.is_object() || !json.contains(name) || !json[name].is_array()) throw InputError("request", name, "nothing", "a list of sessions");
-  std::vector<std::string> list;
-  for (const Json& one : json[name]) {
-    if (!one.is_string()) throw InputError("request", name, one.dump().substr(0, 80), "identifiers of sessions");
-    list.push_back(one.get<std::string>());
-  }
-  return list;
-}
-
 /// What was asked for, or why it is refused; nothing where there is no such thing (null).
 template <class Ask>
 std::optional<std::string> answer(const Ask& ask) {
@@ -140,7 +122,7 @@ Json TrainerLab::change_camera(std::string_view what, const std::string& body) {
 Json TrainerLab::change_study(std::string_view what, const std::string& body) {
   const auto choices = [&](const char* name) {
     std::vector<StudyJob::Choice> list;
-    for (const std::string& id : names(body, name)) {
+    for (const std::string& id : requested_names(body, name)) {
       const auto file = recording_of_(id);
       if (!file) throw InputError("study", name, id, "the identifier of a stored session");
       list.push_back({id, *file});
@@ -157,7 +139,7 @@ Json TrainerLab::change(std::string_view path, const std::string& body) {
   if (take(path, "/api/camera/")) return change_camera(path, body);
   if (take(path, "/api/study/")) return change_study(path, body);
   if (take(path, "/api/upload/")) return change_upload(path, body);
-  if (path == "/api/reconcile/start") reconcile_.start(field(body, "dataset"));
+  if (path == "/api/reconcile/start") reconcile_.start(requested_text(body, "dataset"));
   else if (path == "/api/reconcile/cancel") reconcile_.cancel();
   else if (!path.starts_with("/api/calibration/")) return nullptr;
   if (path.starts_with("/api/reconcile/")) return reconcile_.status();

@@ -148,6 +148,8 @@ int CsvTable::column(const std::string& name) const {
 }
 
 Eigen::VectorXd CsvTable::numbers(int column) const {
+  if (column < 0 || column >= static_cast<int>(header.size()))
+    throw InputError(file + ":1", "header", std::to_string(header.size()) + " columns", "at least " + std::to_string(column + 1) + " columns");
   Eigen::VectorXd out(static_cast<Eigen::Index>(rows.size()));
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const std::string& cell = rows[r][static_cast<std::size_t>(column)];

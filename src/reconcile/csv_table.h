@@ -18,7 +18,7 @@ struct CsvTable {
 
   /// Index of a column; throws InputError where there is none or two.
   int column(const std::string& name) const;
-  /// The column as numbers, NaN where empty; throws InputError for anything else that is not a finite number.
+  /// The column as numbers, NaN where empty; throws InputError where there is no such column, and for anything else that is not a finite number.
   Eigen::VectorXd numbers(int column) const;
 };
 

@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "reconcile/csv_table.h"
-#include "reconcile/report.h"
+#include "reconcile/whole_file.h"
 
 namespace filum::reconcile {
 namespace {

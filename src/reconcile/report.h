@@ -1,6 +1,6 @@
 #pragma once
 // report.json (contract experiments.md), report.html (self-contained, inline SVG) and model.yaml. Each file appears whole or not
-// at all: it is written beside its place and renamed.
+// at all (whole_file.h).
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -16,6 +16,5 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
 std::vector<RuleText> rules_of(const Dataset& d, const Result& r);
 /// Writes all files of a result into a folder, made if need be.
 void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program);
-void write_whole(const std::string& path, const std::string& text);
 
 }  // namespace filum::reconcile

@@ -9,6 +9,7 @@
 #include "reconcile/hardware.h"
 #include "reconcile/hereditary.h"
 #include "reconcile/report.h"
+#include "reconcile/whole_file.h"
 
 namespace filum::reconcile {
 namespace {
@@ -237,17 +238,6 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
   }
   s << "source: { dataset: \"" << d.name << "\", hash: \"" << hash_text(d) << "\", program: \"" << program << "\" }\n";
   return s.str();
-}
-
-void write_whole(const std::string& path, const std::string& text) {
-  const std::string beside = path + ".part";
-  {
-    std::ofstream file(beside, std::ios::binary);
-    file << text;
-    file.flush();
-    if (!file) throw std::runtime_error(path + " cannot be written");
-  }
-  std::filesystem::rename(beside, path);
 }
 
 void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program) {

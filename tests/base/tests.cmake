@@ -1,5 +1,3 @@
 foreach(name block_cholesky ensure error exchange hash markup pose rng stage_clock tet_mesh units utc_stamp yaml_file)
   filum_test(base/${name} filum_base)
 endforeach()
-filum_fuzz(base/units filum_base)
-filum_fuzz(base/yaml_file filum_base)

@@ -126,6 +126,9 @@ TEST(ImportCommand, WhatIsMissingOrWrongIsNamed) {
   folder.write("brain/cortex_tension.csv", std::string(sound).replace(sound.find("\n1.005,") + 1, 5, "abc"));
   expect_refused({"import", "brain-budday2017", brain, "--out", out}, {"cortex_tension.csv:3", "abc"});
   folder.write("brain/cortex_tension.csv", sound);
+  folder.write("brain/cortex_tension.csv", "stretch\n1\n1.1\n");
+  expect_refused({"import", "brain-budday2017", brain, "--out", out}, {"cortex_tension.csv:1", "1 columns", "at least 2 columns"});
+  folder.write("brain/cortex_tension.csv", sound);
   fs::remove(brain + "/corpus-callosum_shear.csv");
   expect_refused({"import", "brain-budday2017", brain, "--out", out}, {"corpus-callosum_shear.csv"});
 }

@@ -62,5 +62,15 @@ TEST(RatingDesk, RefusesHalfFormsNamesAndOtherSessions) {
   EXPECT_TRUE(json::parse(*desk.get("/api/agreement"))["agreement"].empty());
 }
 
+/// What a recording says of its result may be anything: the desk refuses, the trainer goes on.
+TEST(RatingDesk, ADamagedResultIsRefused) {
+  const synthetic::Folder folder;
+  for (const char* result : {"", "[", "[]", R"({"task":5})", R"({"task":"t","scale":5})", R"({"task":"t","scale":{"name":"s","most":"two","items":[]}})"}) {
+    RatingDesk desk(folder.file(""), [&](const std::string&) -> std::optional<std::string> { return result; });
+    EXPECT_TRUE(desk.get("/api/ratings/s1").has_value()) << result;
+    EXPECT_TRUE(json::parse(*desk.post("/api/ratings/s1", R"({"rater":"R1","marks":{}})")).contains("refused")) << result;
+  }
+}
+
 }  // namespace
 }  // namespace filum

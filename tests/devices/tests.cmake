@@ -2,12 +2,6 @@ foreach(name calibration_file calibration_fit calibration_guide clock_sync demon
              pose_track replay_device sample_check serial_forceps)
   filum_test(devices/${name})
 endforeach()
-filum_fuzz(devices/calibration_readings)
-filum_fuzz(devices/forceps_calibration)
-filum_fuzz(devices/frame_reader)
-filum_fuzz(devices/haptic_link)
-filum_fuzz(devices/igtl_tracker)
-filum_fuzz(devices/pose_script)
 
 filum_test(devices/igtl_library ${OpenIGTLink_LIBRARIES})
 target_include_directories(devices_igtl_library_test SYSTEM PRIVATE ${OpenIGTLink_INCLUDE_DIRS})

@@ -1,24 +1,46 @@
-// CSV: whatever the bytes are, a table with as many cells in each row as in its header, or an InputError.
+// CSV: whatever the bytes are, a table with as many cells in each row as in its header, or an InputError. A table that is one then stands for
+// every published table that can be imported: datasets or an InputError.
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-
-#include "base/error.h"
+#include "fuzz_folder.h"
 #include "reconcile/csv_table.h"
+#include "reconcile/importer.h"
+
+namespace {
+
+using namespace filum;
+using reconcile::CsvTable;
+
+void check(const CsvTable& table) {
+  if (table.line.size() != table.rows.size()) std::abort();
+  for (const auto& row : table.rows)
+    if (row.size() != table.header.size()) std::abort();
+  for (std::size_t k = 0; k < table.header.size(); ++k)
+    if (table.numbers(static_cast<int>(k)).size() != static_cast<Eigen::Index>(table.rows.size())) std::abort();
+}
+
+/// A folder in which every published table is the file `table.csv`.
+struct Tables : fuzz::Folder {
+  Tables() {
+    std::filesystem::create_directories(file("in"));
+    for (const char* region : {"cortex", "basal-ganglia", "corona-radiata", "corpus-callosum"})
+      for (const char* mode : {"compression", "tension", "shear"}) link(std::string(region) + "_" + mode);
+    for (const char* letter : {"F", "XF"})
+      for (const char* run : {"10", "20", "30", "005", "01", "05"}) link(std::string(letter) + "_" + run);
+    for (const char* cell : {"1", "2", "3", "4"}) link(std::string("3axisCell") + cell + "CalibrationData");
+    link("loadingTest");
+  }
+  void link(const std::string& name) const { std::filesystem::create_symlink(file("table.csv"), file("in/" + name + ".csv")); }
+};
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using filum::reconcile::CsvTable;
-  try {
-    const CsvTable table = CsvTable::parse(std::string(reinterpret_cast<const char*>(data), size), "fuzz.csv");
-    if (table.line.size() != table.rows.size()) __builtin_trap();
-    for (const auto& row : table.rows)
-      if (row.size() != table.header.size()) __builtin_trap();
-    for (std::size_t k = 0; k < table.header.size(); ++k) {
-      const auto values = table.numbers(static_cast<int>(k));
-      if (values.size() != static_cast<Eigen::Index>(table.rows.size())) __builtin_trap();
-    }
-  } catch (const filum::InputError&) {
-  }
+  static const Tables folder;
+  const std::string text(fuzz::text_of(data, size));
+  fuzz::read([&] {
+    check(CsvTable::parse(text, "fuzz.csv"));
+    folder.write("table.csv", text);
+    for (const std::string& kind : reconcile::import_kinds()) fuzz::read([&] { reconcile::import_data(kind, folder.file("in"), folder.file("out")); });
+  });
   return 0;
 }

@@ -1,0 +1,74 @@
+#include "cli/requests.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+
+namespace filum {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct TooDeep {};
+
+std::vector<ItemMark> marks_of(const Json& scale, const Json& given) {
+  if (!given.is_object()) throw InputError("rating", "marks", "nothing", "points for every item");
+  const int most = scale.at("most").get<int>();
+  std::vector<ItemMark> marks;
+  for (const Json& item : scale.at("items")) {
+    const auto name = item.at("name").get<std::string>();
+    const std::string expected = "a whole number from 0 to " + std::to_string(most);
+    if (!given.contains(name) || !given[name].is_number_integer()) throw InputError("rating", name, given.contains(name) ? json_shown(given[name]) : "nothing", expected);
+    const auto points = given[name].get<std::int64_t>();
+    if (points < 0 || points > most) throw InputError("rating", name, std::to_string(points), expected);
+    marks.push_back({name, static_cast<int>(points)});
+  }
+  if (given.size() != marks.size()) throw InputError("rating", "marks", std::to_string(given.size()) + " items", "the items of the scale");
+  return marks;
+}
+
+}  // namespace
+
+Json parsed_json(const std::string& text) {
+  const auto shallow = [](int depth, Json::parse_event_t, Json&) -> bool {
+    if (depth > kJsonDepth) throw TooDeep();
+    return true;
+  };
+  try {
+    return Json::parse(text, shallow, false);
+  } catch (const TooDeep&) {
+    return Json(Json::value_t::discarded);
+  }
+}
+
+std::string json_text(const Json& document) { return document.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string json_shown(const Json& value) { return json_text(value).substr(0, 80); }
+
+std::string requested_text(const std::string& body, const char* name) {
+  const Json json = parsed_json(body);
+  if (!json.is_object() || !json.contains(name) || !json[name].is_string()) throw InputError("request", name, "nothing", "a text");
+  return json[name].get<std::string>();
+}
+
+std::vector<std::string> requested_names(const std::string& body, const char* name) {
+  const Json json = parsed_json(body);
+  if (!json.is_object() || !json.contains(name) || !json[name].is_array()) throw InputError("request", name, "nothing", "a list of sessions");
+  std::vector<std::string> list;
+  for (const Json& one : json[name]) {
+    if (!one.is_string()) throw InputError("request", name, json_shown(one), "identifiers of sessions");
+    list.push_back(one.get<std::string>());
+  }
+  return list;
+}
+
+Rating requested_rating(const std::string& session, const std::string& task, const Json& scale, const std::string& body) {
+  if (scale.is_null()) throw InputError("rating", "scale", "none", "a session of a task that has a rating scale");
+  const Json wish = parsed_json(body);
+  if (!wish.is_object() || !wish.contains("rater") || !wish["rater"].is_string()) throw InputError("rating", "rater", "nothing", "the rater's code");
+  Rating r{session, task, scale.at("name").get<std::string>(), wish["rater"].get<std::string>(), "", {}};
+  r.marks = marks_of(scale, wish.contains("marks") ? wish["marks"] : Json(nullptr));
+  return r;
+}
+
+}  // namespace filum

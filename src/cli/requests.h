@@ -1,0 +1,30 @@
+#pragma once
+// JSON that pages send and recordings carry, read before anybody acts on it. Test: tests/cli/requests_test.cpp, requests_fuzz.cpp.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "session/ratings.h"
+
+namespace filum {
+
+inline constexpr int kJsonDepth = 64;
+
+/// The document of a text; "discarded" where it is no JSON or nested deeper than kJsonDepth: copying and printing go down the nesting, and the
+/// stack with them.
+nlohmann::ordered_json parsed_json(const std::string& text);
+/// One line; bytes that are no text do not break it.
+std::string json_text(const nlohmann::ordered_json& document);
+/// What was found in place of something else: at most 80 bytes.
+std::string json_shown(const nlohmann::ordered_json& value);
+
+/// A text, or a list of texts, of a request's object. Throw InputError.
+std::string requested_text(const std::string& body, const char* name);
+std::vector<std::string> requested_names(const std::string& body, const char* name);
+
+/// A rater's code and marks, one for each item of the scale that the session's result carries. Throws InputError; `scale`, from a recording, may
+/// be damaged: then a JSON library's exception (std::exception).
+Rating requested_rating(const std::string& session, const std::string& task, const nlohmann::ordered_json& scale, const std::string& body);
+
+}  // namespace filum

@@ -1,0 +1,67 @@
+#include <numbers>
+
+#include "training/needle_task.h"
+
+namespace filum {
+
+/// Angles are those of the stitches' table: from where the vessel's angle is zero.
+StitchRule parse_stitch_rule(const YamlNode& node) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  StitchRule r;
+  r.count = node.integer_or("stitches", 1, 1, kMaxPasses / 2);
+  if (node.has("from")) {
+    r.from = node.quantity("from", "deg", Range::between(-kTurn, kTurn));
+    r.span = node.quantity("to", "deg", Range::between(r.from, r.from + kTurn)) - r.from;
+  }
+  if (node.has("apart")) {
+    r.apart = node.quantity("apart", "deg", Range::between(1e-3, std::numbers::pi));
+    r.within = node.quantity("within", "deg", Range::positive());
+  }
+  r.clear = node.quantity_or("clear", "deg", 0.0, Range::between(0.0, std::numbers::pi));
+  r.running = node.flag_or("running", false);
+  if (r.running && r.apart == 0.0) node.refuse("apart", "how far a running thread goes from stitch to stitch");
+  return r;
+}
+
+NeedleGoal parse_needle_goal(const YamlNode& node) {
+  NeedleGoal g;
+  const std::string kind = node.choice("kind", {"pick", "load", "present", "pass", "draw", "eye", "tie", "cut", "stitch"});
+  g.tool = node.integer_or("tool", 0, 0, 2);
+  if (kind == "load") {
+    g.kind = NeedleGoal::Kind::load;
+    g.low = node.number("from", Range::between(0.0, 1.0));
+    g.high = node.number("to", Range::between(g.low, 1.0));
+    g.angle = node.quantity("square_within", "deg", Range::positive());
+    g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
+  } else if (kind == "present") {
+    g.kind = NeedleGoal::Kind::present;
+    g.at = node.vec3("at", "mm");
+    g.within = node.quantity("within", "mm", Range::positive());
+    g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
+  } else if (kind == "eye") {
+    g.kind = NeedleGoal::Kind::eye;
+    g.at = node.vec3("in", "mm");
+    g.out = node.vec3("out", "mm");
+    g.within = node.quantity("within", "mm", Range::positive());
+  } else if (kind == "stitch") {
+    g.kind = NeedleGoal::Kind::stitch;
+    g.stitch = parse_stitch_rule(node);
+  } else if (kind == "cut") {
+    g.kind = NeedleGoal::Kind::cut;
+    g.passes = node.integer_or("passes", 2, 1, kMaxPasses);
+  } else if (kind == "tie") {
+    g.kind = NeedleGoal::Kind::tie;
+    g.passes = node.integer("passes", 1, kMaxPasses);
+    g.throws = node.integer("throws", 1, 10);
+    if (node.has("knot")) g.knot = node.choice("knot", {"overhand", "square", "surgeons", "granny", "triple"});
+    g.loop = node.quantity("loop", "mm", Range::positive());
+    g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
+  } else if (kind == "pass" || kind == "draw") {
+    g.kind = kind == "pass" ? NeedleGoal::Kind::pass : NeedleGoal::Kind::draw;
+    g.passes = node.integer("passes", 1, kMaxPasses);
+    if (kind == "draw") g.tail = node.quantity("tail", "mm", Range::positive());
+  }
+  return g;
+}
+
+}  // namespace filum

@@ -1,0 +1,45 @@
+#include "cli/requests.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "cli/calibration_plan.h"
+#include "cli/camera_plan.h"
+#include "cli/dataset_upload.h"
+#include "tests/session/synthetic.h"
+
+namespace filum {
+namespace {
+
+std::string nested(int levels) { return std::string(static_cast<std::size_t>(levels), '[') + std::string(static_cast<std::size_t>(levels), ']'); }
+
+TEST(Requests, AnObjectsTextsAreReadOrRefused) {
+  EXPECT_EQ(requested_text(R"({"dataset":"block"})", "dataset"), "block");
+  EXPECT_EQ(requested_names(R"({"sessions":["a","b"]})", "sessions"), (std::vector<std::string>{"a", "b"}));
+  for (const char* body : {"", "[]", "{", R"({"dataset":1})", R"({"other":"block"})"}) EXPECT_THROW(requested_text(body, "dataset"), InputError) << body;
+  for (const char* body : {R"({"sessions":"a"})", R"({"sessions":[1]})"}) EXPECT_THROW(requested_names(body, "sessions"), InputError) << body;
+}
+
+TEST(Requests, JsonDeeperThanTheLimitIsNone) {
+  EXPECT_TRUE(parsed_json(nested(kJsonDepth)).is_array());
+  EXPECT_TRUE(parsed_json(nested(kJsonDepth + 1)).is_discarded());
+  EXPECT_TRUE(parsed_json("{").is_discarded());
+}
+
+/// A body of 64 kB can nest 30,000 deep; copying or printing it would run out of the stack, and the trainer with it.
+TEST(Requests, NestingThatWouldEndTheStackIsRefused) {
+  const synthetic::Folder folder;
+  DatasetUpload upload(folder.file("datasets"));
+  const std::string deep = nested(30000);
+  EXPECT_THROW(requested_names(R"({"sessions":[)" + deep + "]}", "sessions"), InputError);
+  EXPECT_THROW(calibration_plan(R"({"sensor":)" + deep + "}", "", "", ""), InputError);
+  EXPECT_THROW(camera_plan(R"({"name":)" + deep + "}", "program", "", ""), InputError);
+  EXPECT_THROW(upload.begin(R"({"dataset":"d","files":[{"name":"a","bytes":)" + deep + "}]}"), InputError);
+  const nlohmann::ordered_json scale = {{"name", "mars10"}, {"most", 2}, {"items", nlohmann::ordered_json::array()}};
+  EXPECT_THROW(requested_rating("s", "t", scale, R"({"rater":"R1","marks":)" + deep + "}"), InputError);
+}
+
+}  // namespace
+}  // namespace filum
