@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <limits>
@@ -147,6 +148,11 @@ TetMesh load_mesh(const std::string& path) {
   constexpr long kMost = 5'000'000;
   if (!(in >> nodes >> tets) || nodes < 4 || tets < 1 || nodes > kMost || tets > kMost)
     throw InputError(path, "counts", std::to_string(nodes) + " " + std::to_string(tets), "nodes (4 or more) and elements (1 or more), 5 million at most");
+  constexpr long kNodeBytes = 6, kTetBytes = 10;  // "0 0 0\n", "0 0 0 0 0\n": before room is made for what a few bytes promise
+  std::error_code none;
+  const auto bytes = std::filesystem::file_size(path, none);
+  if (!none && static_cast<std::uintmax_t>(kNodeBytes * nodes + kTetBytes * tets) > bytes + 1)
+    throw InputError(path, "counts", std::to_string(nodes) + " " + std::to_string(tets), "as many as the file's " + std::to_string(bytes) + " bytes can hold");
   TetMesh m;
   m.nodes.resize(3, nodes);
   for (long i = 0; i < nodes; ++i)

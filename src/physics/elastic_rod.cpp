@@ -82,10 +82,6 @@ void accept_geometry(const RodGeometry& g, const Points& x, const Eigen::VectorX
   s.ref_twist.head(s.n) = g.ref_twist.head(s.n);
 }
 
-double most_elastic_curvature(double yield_strain, double radius) noexcept {
-  return 16.0 / (3.0 * std::numbers::pi) * yield_strain / radius;
-}
-
 void take_set(const RodMaterial& m, RodState& s, const RodGeometry& g) noexcept {
   for (int i = 1; i + 1 < s.n; ++i) {
     const double most = m.most_elastic_curvature * node_length(s, i);

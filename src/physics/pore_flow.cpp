@@ -10,10 +10,6 @@
 
 namespace filum {
 
-double poisson_by_block(double share, double poisson) { return (1.0 - share) * (1.0 + poisson) - 1.0; }
-
-double poisson_by_punch(double share, double poisson) { return std::max(-0.9, 1.0 - (1.0 - poisson) / (1.0 - share)); }
-
 PoreLaw pore_law(const FemMaterial& sudden, const Drainage& d, const std::string& file) {
   check_material(sudden, file);
   const double nu = d.poisson_drained;

@@ -20,7 +20,6 @@ double towards(double now, double wanted, double most) noexcept { return now + s
 
 }  // namespace
 
-double clamp_reach(const VesselModel& vessel) noexcept { return vessel.radius + 1.5e-3; }
 
 Pose clamp_pose(const VesselModel& vessel, const ClampState& clamp, int which) noexcept {
   DoubleClamp now = vessel.clamp;

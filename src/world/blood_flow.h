@@ -24,7 +24,7 @@ namespace filum {
 /// third one, at the far end of the vessel with the opening, which stays on.
 Pose clamp_pose(const VesselModel& vessel, const ClampState& clamp, int which) noexcept;
 inline int n_clamps(const VesselModel& vessel) noexcept { return vessel.clamp.side ? 3 : 2; }
-double clamp_reach(const VesselModel& vessel) noexcept;  // [m], of its arm from the axis
+inline double clamp_reach(const VesselModel& vessel) noexcept { return vessel.radius + 1.5e-3; }  // [m], of its arm from the axis
 
 class BloodFlow {
  public:

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "world/brain_scene.h"
+#include "world/describe.h"
 #include "world/measured_model.h"
 #include "world/model_file.h"
 #include "world/task_folder.h"
@@ -43,6 +43,7 @@ void read_veins(const YamlNode& file, BrainModel& m) {
     const Vec3 at = item.vec3("cortex", "mm");
     v.dura_W = item.vec3("dura", "mm");
     double nearest = 1.0;
+    v.node = -1;
     for (const int i : m.cortex.surface_nodes) {
       const double d = (m.cortex.mesh.nodes.col(i) - at).norm();
       const bool held = std::binary_search(m.cortex.held.begin(), m.cortex.held.end(), i);
@@ -50,6 +51,7 @@ void read_veins(const YamlNode& file, BrainModel& m) {
       nearest = d;
       v.node = i;
     }
+    if (v.node < 0) item.refuse("cortex", "a place on the free surface, within 1 m of it");
     v.slack = (v.dura_W - Vec3(m.cortex.mesh.nodes.col(v.node))).norm() * item.number("slack", Range::between(1.0, 3.0));
     v.stiffness = item.quantity("stiffness", "N/m", Range::positive());
     v.strength = item.quantity("strength", "N", Range::positive());

@@ -6,6 +6,7 @@
 
 #include "base/hash.h"
 #include "world/blade_arm.h"
+#include "world/describe.h"
 
 namespace filum {
 namespace {
@@ -32,22 +33,6 @@ bool covers(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) noexcept
   const double whole = cross(a, b, c), wa = cross(p, b, c), wb = cross(a, p, c), wc = cross(a, b, p);
   if (whole == 0.0 || wa * whole < 0.0 || wb * whole < 0.0 || wc * whole < 0.0) return false;
   return (wa * a.z() + wb * b.z() + wc * c.z()) / whole > p.z() + 1e-6;
-}
-
-RigidSurface surface_of_shape(const BladeShape& shape) {
-  constexpr double kCell = 2.5e-3;  // [m]
-  return blade_surface(shape, std::max(4, static_cast<int>(shape.length / kCell)), std::max(2, static_cast<int>(shape.width / kCell)));
-}
-
-/// As two triangles in the field's frame.
-BladeDescription falx_surface(const BrainModel& m) {
-  const double x = m.cortex.mesh.nodes.row(0).cwiseAbs().maxCoeff();
-  BladeDescription d;
-  d.name = "falx";
-  d.vertices.resize(3, 4);
-  d.vertices << -x, x, x, -x, m.falx.y, m.falx.y, m.falx.y, m.falx.y, m.falx.bottom, m.falx.bottom, m.falx.top, m.falx.top;
-  d.triangles = {{0, 1, 2}, {0, 2, 3}};
-  return d;
 }
 
 FemOptions compressed(FemOptions o, double factor) {
@@ -381,32 +366,6 @@ void BrainScene::size_observation(Observation& o) const {
   b.vein_torn.assign(model_->veins.size(), 0);
   b.section = Points::Zero(3, static_cast<Eigen::Index>(section_.corners.size()));
   b.section_stress.assign(section_.triangles.size(), 0.0);
-}
-
-void describe_brain(const BrainModel& model, BrainDescription& b) {
-  const std::vector<int>& nodes = model.cortex.surface_nodes;
-  const auto vertex = [&](int node) { return static_cast<int>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()); };
-  b.name = model.name;
-  b.rest.resize(3, static_cast<Eigen::Index>(nodes.size()));
-  for (std::size_t k = 0; k < nodes.size(); ++k) b.rest.col(static_cast<Eigen::Index>(k)) = model.cortex.mesh.nodes.col(nodes[k]);
-  for (const Triangle& t : model.cortex.surface) b.triangles.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
-  // blade i is tool i; after the blades the second form of each, and so on; a falx comes last, where it stands
-  for (std::size_t form = 0; form < model.blades.front().size(); ++form)
-    for (std::size_t i = 0; i < model.blades.size(); ++i) {
-      const BladeShape& shape = model.blades[i][form];
-      const RigidSurface surface = surface_of_shape(shape);
-      b.blades.push_back({form == 0 ? model.blade_names[i] : shape.name, surface.vertices, surface.triangles, shape.width, shape.grip});
-    }
-  if (model.falx.present()) b.blades.push_back(falx_surface(model));
-  for (const BridgingVein& v : model.veins) b.veins.push_back({vertex(v.node), v.dura_W});
-  const BrainSection section = cut_mesh(model.cortex.mesh, model.section_x);
-  b.section_triangles = section.triangles;
-  b.section_rest.resize(3, static_cast<Eigen::Index>(section.corners.size()));
-  for (std::size_t k = 0; k < section.corners.size(); ++k) b.section_rest.col(static_cast<Eigen::Index>(k)) = corner_place(section.corners[k], model.cortex.mesh.nodes);
-  b.target_W = model.target_W;
-  b.target_radius = model.target_radius;
-  b.bone_y = model.bone_y;
-  b.time_compression = model.time_compression;
 }
 
 void BrainScene::match(const BrainState& s) {

@@ -64,9 +64,6 @@ class BrainScene {
   FemSummary summary_;
 };
 
-/// Fills the brain of a description.
-void describe_brain(const BrainModel& model, BrainDescription& d);
-
 /// Hashes of the arrays of a brain's state, by name.
 std::array<std::pair<const char*, std::uint64_t>, 8> brain_hashes(const BrainState& s) noexcept;
 

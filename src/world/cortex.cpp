@@ -16,6 +16,8 @@ void check(const CortexShape& s, const std::string& file) {
   if (!(s.size.array() > 5e-3).all() || !(s.size.array() < 0.3).all()) refuse("size", s.size.minCoeff(), "5 mm to 300 mm each way");
   for (const int c : s.cells)
     if (c < 2 || c > 100) refuse("cells", c, "2 to 100 each way");
+  constexpr int kMostCells = 50000;  // six elements each: ten times what runs in real time
+  if (const int all = s.cells[0] * s.cells[1] * s.cells[2]; all > kMostCells) refuse("cells", all, "at most 50,000 in all");
   if (s.cells[1] % 2 != 0) refuse("cells", s.cells[1], "an even number across, so that the fissure has nodes");
   if (!(s.gyrus > 1e-3)) refuse("gyrus", s.gyrus, "more than 1 mm");
   if (!(s.sulcus >= 0.0 && s.sulcus < 0.2 * s.size.z())) refuse("sulcus", s.sulcus, "less than a fifth of the depth");

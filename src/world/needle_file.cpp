@@ -1,9 +1,9 @@
 #include "world/needle_file.h"
 
 #include "base/units.h"
+#include "world/describe.h"
 #include "world/model_file.h"
 #include "world/needle_model.h"
-#include "world/needle_scene.h"
 
 namespace filum {
 

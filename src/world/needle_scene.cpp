@@ -147,13 +147,4 @@ void NeedleScene::observe(const State& s, Observation& o) const noexcept {
   }
 }
 
-void describe_needle(const NeedleShape& shape, NeedleDescription& d) {
-  d.present = true;
-  d.name = shape.name;
-  d.wire_radius = shape.wire_radius;
-  d.bend_radius = shape.bend_radius;
-  d.angle = shape.angle();
-  d.taper = shape.taper;
-}
-
 }  // namespace filum

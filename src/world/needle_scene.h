@@ -47,6 +47,4 @@ class NeedleScene {
   double thread_pull_ = 0.0;
 };
 
-void describe_needle(const NeedleShape& shape, NeedleDescription& d);
-
 }  // namespace filum

@@ -2,9 +2,9 @@
 
 #include <numbers>
 
+#include "world/describe.h"
 #include "world/model_file.h"
 #include "world/needle_model.h"
-#include "world/vessel_scene.h"
 #include "world/vessel_state.h"
 #include "world/wall_file.h"
 
@@ -164,7 +164,7 @@ void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
   m.sources.push_back(file);
   v->track = load_track(root + "/" + file);
   if (v->track.layers.size() != v->layers.size()) node.refuse("track", "as many layers as the tissue has");
-  VesselScene(*v, m.needle->shape, m.description.capacity).describe(m.description.tissue);
+  describe_tissue(*v, m.description.tissue);
   m.vessel = std::move(v);
 }
 

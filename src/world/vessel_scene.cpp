@@ -25,24 +25,6 @@ std::uint64_t hash_point(const WallPoint& p, std::uint64_t h) noexcept {
   return hash_bytes(row.data(), sizeof(row), h);
 }
 
-/// Both sides of a cut at rest, their rims the same way round, each from its node furthest towards where the angle is zero.
-std::array<CutEdge, 2> cut_edges(const VesselModel& v) {
-  std::array<CutEdge, 2> edges;
-  const auto pose = stump_poses(v.clamp, v.shape.stretch * v.shape.length);
-  std::array<Vec3, 2> area{Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t part = 0; part < 2; ++part) {
-    std::vector<Vec3>& rim = edges[part].rim;
-    for (const int i : v.mesh.edge_ring[part]) rim.push_back(v.mesh.nodes.col(i));
-    for (std::size_t k = 0; k < rim.size(); ++k) area[part] += 0.5 * (rim[k] - rim[0]).cross(rim[(k + 1) % rim.size()] - rim[0]);
-    if (area[part].dot(area[0]) < 0.0) std::reverse(rim.begin(), rim.end());
-    const auto first = std::max_element(rim.begin(), rim.end(), [&](const Vec3& p, const Vec3& q) { return p.dot(v.cut_along) < q.dot(v.cut_along); });
-    std::rotate(rim.begin(), first, rim.end());
-    edges[part].axis = pose[part].q * Vec3::UnitZ();
-    edges[part].origin = pose[part].p;
-  }
-  return edges;
-}
-
 std::uint64_t hash_blood(const BloodState& b, std::uint64_t h) noexcept {
   const Milking& m = b.milking;
   const std::array<double, 15> row = {static_cast<double>(b.off[0]), static_cast<double>(b.off[1]), static_cast<double>(b.wrong_order), static_cast<double>(b.known),
@@ -90,25 +72,6 @@ void VesselScene::fall_flat(VesselState& s) {
     if (k > kFalling + 50 && s.wall.v.colwise().norm().maxCoeff() < kLying) break;
   }
   s.wall.v.setZero();
-}
-
-void VesselScene::describe(TissueDescription& d) const {
-  d.name = model_.name;
-  d.kind = model_.kind;
-  d.thickness = model_.thickness;
-  d.cut_along = model_.cut_along;
-  d.lumen = model_.lumen;
-  d.axis = model_.clamp.X_WB.q * Vec3::UnitZ();
-  d.middle = model_.clamp.X_WB.p;
-  if (model_.clamp.side) {
-    const auto& part = model_.mesh.node_part;
-    d.second = static_cast<int>(std::find(part.begin(), part.end(), 1) - part.begin());
-    d.edges = cut_edges(model_);
-  }
-  d.radius = model_.radius;
-  d.clamp_reach = model_.lumen ? clamp_reach(model_) : 0.0;
-  d.rest = model_.mesh.nodes;
-  for (const Triangle& t : wall_.triangles()) d.triangles.push_back({t[0], t[1], t[2]});
 }
 
 void VesselScene::size_observation(Observation& o) const {

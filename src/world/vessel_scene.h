@@ -18,7 +18,6 @@ class VesselScene {
 
   /// The tissue as its stresses and clamps leave it; `point`: of the needle.
   VesselState start(const Vec3& point);
-  void describe(TissueDescription& d) const;
   void size_observation(Observation& o) const;
 
   void hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
