@@ -20,8 +20,8 @@ if(TARGET filum_nifti)
 endif()
 # world: sutures, instruments, needles, tracks, vessels, blades, brains, measured models; scenes
 if(TARGET filum_scenes)
-  filum_fuzz(world/model_file filum_scenes SEEDS models/suture/*.yaml models/instrument/*.yaml models/needle/*.yaml models/track/*.yaml models/vessel/*.yaml models/spatula/*.yaml models/brain/*.yaml)
-  filum_fuzz(world/scene_file filum_scenes SEEDS curricula/knot-square/scene.yaml curricula/card-stitches/scene.yaml curricula/vessel-stitch/scene.yaml curricula/end-to-side/scene.yaml curricula/press-to-target/scene.yaml curricula/research/*/scene.yaml)
+  filum_fuzz(world/model_file filum_scenes SEEDS models/suture/*.yaml models/instrument/*.yaml models/needle/*.yaml models/track/*.yaml models/vessel/*.yaml models/spatula/*.yaml)
+  filum_fuzz(world/scene_file filum_scenes)
 endif()
 # training: tasks, rules of lapses, rating scales, limits of pressure
 if(TARGET filum_rules)

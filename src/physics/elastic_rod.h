@@ -13,7 +13,6 @@
 // Tests: elastic_rod_test (gradient and Hessian by differences, rigid motion, order 2 in bending and twist), `filum validate`.
 
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "base/block_cholesky.h"
@@ -114,7 +113,7 @@ void accept_geometry(const RodGeometry& g, const Points& x, const Eigen::VectorX
 void take_set(const RodMaterial& m, RodState& s, const RodGeometry& g) noexcept;
 
 /// 16/(3 pi) yield_strain / radius [1/m].
-inline double most_elastic_curvature(double yield_strain, double radius) noexcept { return 16.0 / (3.0 * std::numbers::pi) * yield_strain / radius; }
+double most_elastic_curvature(double yield_strain, double radius) noexcept;
 
 /// Axial force [N] in edge j, positive in tension.
 double edge_tension(const RodMaterial& m, const RodState& s, int j) noexcept;

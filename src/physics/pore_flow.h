@@ -10,7 +10,6 @@
 // Valid: small strains, constant permeability. Test: pore_flow_test (confined and unconfined compression in closed form).
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -23,9 +22,9 @@ struct Drainage {
   double poisson_drained = 0.0;  // [-], below that of a sudden load
 };
 /// Poisson's ratio once drained where sudden uniaxial stiffness falls by this share (E_d/E_u = (1 + nu_d)/(1 + nu_u), since G stays).
-inline double poisson_by_block(double share, double poisson) { return (1.0 - share) * (1.0 + poisson) - 1.0; }
+double poisson_by_block(double share, double poisson);
 /// The same under a flat punch on a half space (stiffness as G/(1 - nu)); at least -0.9.
-inline double poisson_by_punch(double share, double poisson) { return std::max(-0.9, 1.0 - (1.0 - poisson) / (1.0 - share)); }
+double poisson_by_punch(double share, double poisson);
 
 struct PoreLaw {
   double Q = 0.0, k = 0.0;   // [Pa], [m2/(Pa s)]

@@ -85,6 +85,13 @@ TEST(TetMesh, FileKeepsTheMeshAndACutFileIsRefused) {
   EXPECT_LT((back.nodes - m.nodes).cwiseAbs().maxCoeff(), 1e-8);
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   EXPECT_THROW(load_mesh(path), InputError);
+  std::ofstream(path) << "filum-mesh/1\n5000000 5000000\n0 0 0\n";
+  try {
+    load_mesh(path);
+    ADD_FAILURE() << "a mesh of a few bytes was taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.field, "counts") << error.what();  // before room is made for them
+  }
   std::filesystem::remove(path);
 }
 

@@ -191,6 +191,8 @@ TEST(BrainScene, ImpossibleTissueIsRefusedByField) {
   EXPECT_PRED2(names, refused("value: \"2.9 kPa\"", "value: \"nan kPa\""), "young");
   EXPECT_PRED2(names, refused("value: \"2.9 kPa\"", "value: \"2.9 mm\""), "young");
   EXPECT_PRED2(names, refused("reach: \"6.5 mm\"", "reach: \"-1 mm\""), "reach");
+  const std::string vein = "\nveins:\n  - { cortex: [\"12 m\", \"0 mm\", \"0 mm\"], dura: [\"0 mm\", \"0 mm\", \"4 mm\"], slack: 1.6, stiffness: \"8 N/m\", strength: \"0.1 N\", source: test }\n";
+  EXPECT_PRED2(names, refused("reach: \"6.5 mm\"", "reach: \"6.5 mm\"" + vein), "cortex");
 }
 
 }  // namespace

@@ -68,6 +68,8 @@ TEST(Cortex, ImpossibleSizesAreRefused) {
   s = {};
   s.cells = {20, 15, 8};
   EXPECT_THROW(make_cortex(s, "cortex"), InputError);
+  s.cells = {100, 100, 100};
+  EXPECT_THROW(make_cortex(s, "cortex"), InputError);
   s = fissured();
   s.fissure_depth = 39e-3;
   EXPECT_THROW(make_cortex(s, "cortex"), InputError);

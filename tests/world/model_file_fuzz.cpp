@@ -21,8 +21,21 @@ void read_suture(const std::string& path) {
   if (!(m.radius > 0.0 && m.EA > 0.0 && m.EI > 0.0 && m.GJ > 0.0)) std::abort();
 }
 
+/// A root with a scene of one blade that the brain is read for.
+struct Root : fuzz::Folder {
+  Root() {
+    std::filesystem::create_directories(file("curricula/fuzz"));
+    std::filesystem::create_directories(file("models"));
+    std::filesystem::create_directory_symlink(std::string(FILUM_SOURCE_DIR) + "/models/spatula", file("models/spatula"));
+    write("curricula/fuzz/scene.yaml",
+          "format: filum-brain-scene/1\ntitle: Any brain\nbrain: none\nstep: 5 ms\nblades:\n"
+          "  - { model: straight-10, p: [0 mm, -12 mm, 8 mm], handle: [0, 1, 0.05], opening: [-1, 0, 0] }\n");
+  }
+};
+
 void read_brain(const std::string& path) {
-  if (!load_model(FILUM_SOURCE_DIR, "press-to-target", path)) std::abort();
+  static const Root root;
+  if (!load_model(root.path(), "fuzz", path)) std::abort();
 }
 
 struct Reader {

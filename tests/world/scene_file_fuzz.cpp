@@ -5,11 +5,15 @@
 
 namespace {
 
-/// A root with the models of this one and one task.
+/// A root with the models of this one, a brain of few elements (models/brain/fuzz.yaml) and one task.
 struct Root : filum::fuzz::Folder {
   Root() {
-    std::filesystem::create_directories(file("curricula/fuzz"));
-    std::filesystem::create_directory_symlink(std::string(FILUM_SOURCE_DIR) + "/models", file("models"));
+    namespace fs = std::filesystem;
+    fs::create_directories(file("curricula/fuzz"));
+    fs::create_directories(file("models/brain"));
+    for (const auto& entry : fs::directory_iterator(std::string(FILUM_SOURCE_DIR) + "/models"))
+      if (entry.path().filename() != "brain") fs::create_directory_symlink(entry.path(), file("models/" + entry.path().filename().string()));
+    fs::copy_file(std::string(FILUM_SOURCE_DIR) + "/tests/world/corpus/model_file/brain.yaml", file("models/brain/fuzz.yaml"));
   }
 };
 

@@ -205,6 +205,8 @@ TEST_F(SceneFile, GeometryBeyondTheBenchIsRefused) {
   expect_refusal(scene_, place, "p: [\"1 m\", \"1 m\", \"0 m\"]", "p");
 }
 
+TEST_F(SceneFile, TissueWithoutANeedleIsRefused) { expect_refusal(scene_, "floor: ", "tissue: { kind: card }\nfloor: ", "needle"); }
+
 TEST_F(SceneFile, MissingModelFilesAreNamed) {
   fs::remove(root_ / forceps_);
   try {
