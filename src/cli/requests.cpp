@@ -30,8 +30,9 @@ std::vector<ItemMark> marks_of(const Json& scale, const Json& given) {
 }  // namespace
 
 Json parsed_json(const std::string& text) {
-  const auto shallow = [](int depth, Json::parse_event_t, Json&) -> bool {
-    if (depth > kJsonDepth) throw TooDeep();
+  using Event = Json::parse_event_t;
+  const auto shallow = [](int around, Event event, Json&) -> bool {
+    if (around >= kJsonDepth && (event == Event::array_start || event == Event::object_start)) throw TooDeep();
     return true;
   };
   try {
