@@ -155,6 +155,7 @@ void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
   auto v = std::make_shared<VesselModel>();
   v->kind = node.choice("kind", {"card", "vessel"});
   v->wall.dt = m.step.dt;
+  v->wall.strict_iterations = 5;
   v->wall.max_iterations = 16;  // a late step is made up for; a wall that is far from balance is not
   if (v->kind == "card")
     read_flaps(node, *v);
