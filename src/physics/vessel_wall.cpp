@@ -28,7 +28,7 @@ constexpr double kMeetingShare = 0.1;   // stiffness of a node against a face, o
 constexpr double kLeastStretch = 0.3, kMostStretch = 16.0;  // [-], det F and |F|^2 of a node beyond which the first matrix is only turned
 constexpr int kMostPairs = 64;
 constexpr double kLateGrowth = 1.6;     // of the tolerance from one late iteration to the next
-constexpr double kLargestLate = 1e-4;   // [N]
+constexpr double kLargestLate = 3e-5;   // [N]: a third of what blood at 100 mmHg presses on a node of an artery with
 constexpr double kViolent = 10.0;    // times the tolerance: unbalanced force of a node at the first guess that is too far off to be trusted
 
 using Vector = Eigen::VectorXd;

@@ -134,7 +134,7 @@ TEST(WallLateTolerance, IsStrictAtFirstAndGrowsUpToItsLimit) {
   EXPECT_DOUBLE_EQ(late_tolerance(o, 4), 1e-5);
   EXPECT_NEAR(late_tolerance(o, 5), 1.6e-5, 1e-12);
   EXPECT_NEAR(late_tolerance(o, 6), 2.56e-5, 1e-12);
-  EXPECT_NEAR(late_tolerance(o, 16), 1e-4, 1e-12);
+  EXPECT_NEAR(late_tolerance(o, 16), 3e-5, 1e-12);
   o.tolerance = 3e-4;
   EXPECT_DOUBLE_EQ(late_tolerance(o, 16), 3e-4) << "never stricter than at first";
   EXPECT_DOUBLE_EQ(late_tolerance(WallOptions(), 24), WallOptions().tolerance) << "not in closed-form problems";
