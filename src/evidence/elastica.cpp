@@ -58,7 +58,7 @@ void list_ring_energy(ProblemList& list) {
 /// A polygon of n corners against what its formula says, (tan x/x)^2 with x = pi/n: the curvature at a corner is 2 tan x over the edge.
 void list_polygon(ProblemList& list, int n) {
   ValidationProblem p;
-  p.name = "bending-energy-polygon-" + std::to_string(n);
+  p.name = "polygon-energy-" + std::to_string(n);
   p.source = "Curvature binormal, |kb| = 2 tan(x), x = pi/n (Bergou et al., ACM TOG 27(3):63, 2008): U/(pi B/R) = (tan x/x)^2";
   p.quantity = "bending energy / (pi B/R) of a regular polygon of " + std::to_string(n) + " corners as long as the circle";
   p.expected = std::pow(std::tan(kPi / n) * n / kPi, 2);

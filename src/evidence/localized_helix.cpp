@@ -44,7 +44,7 @@ RodProbe straight_rod(const HelixRod& rod, int edges) {
 
 /// Brings the ends together in the first quarter of the way and turns the last all the while. True if it then rests.
 bool wind(RodProbe& probe, const HelixRod& rod) {
-  constexpr int kParts = 180;
+  constexpr int kParts = 60;
   const int n = probe.state.n;
   const Points start = probe.state.x;
   bool rests = false;
