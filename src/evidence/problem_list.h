@@ -29,6 +29,8 @@ void list_passages(ProblemList& list);  // that there are none
 void list_tissue(ProblemList& list);    // brain: elements, time, half space, solvers
 void list_spatula(ProblemList& list);   // blade on tissue
 void list_vessel(ProblemList& list);    // tubes, the carotid, the ring
+void list_vessel_stress(ProblemList& list);   // stress in the wall of tubes
+void list_vessel_cut(ProblemList& list);      // a ring that springs open
 void list_vessel_element(ProblemList& list);  // the wall's element alone
 void list_needle_track(ProblemList& list);  // a needle through tissue
 
