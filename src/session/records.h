@@ -67,7 +67,7 @@ struct EventRecord {
   int tool = -1;       // -1 none
   double value = 0.0;  // in `unit`
   FixedText<16> unit = "-";
-  FixedText<200> text;  // for people, may be empty; not there in recordings of format 1
+  FixedText<200> text = "";  // for people, may be empty; not there in recordings of format 1
 };
 
 /// Hash of one array of the state, taken every so many steps so that a replay can name the first array that
