@@ -48,5 +48,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     drain(recording.array_hashes(), filum::ArrayHashRecord());
   } catch (const filum::InputError&) {
   }
+  try {
+    const filum::RecordingReader recording(path_with(data, size));
+    recording.find_damage();
+    recording.last_step();
+  } catch (const filum::InputError&) {
+  }
   return 0;
 }
