@@ -3,6 +3,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -52,7 +53,12 @@ struct YamlNode::Value {
 
   std::string described() const {
     if (kind == Kind::scalar) return shown(scalar);
-    return kind == Kind::list ? "a list" : "a map";
+    if (kind == Kind::map) return "a map";
+    const auto is_scalar = [](const std::unique_ptr<Value>& child) { return child->kind == Kind::scalar; };
+    if (children.size() > 4 || !std::all_of(children.begin(), children.end(), is_scalar)) return "a list";
+    std::string all;
+    for (const auto& child : children) all += (all.empty() ? "[" : ", ") + shown(child->scalar);
+    return all.empty() ? "an empty list" : all + "]";
   }
 };
 

@@ -11,19 +11,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/inputs.h"
+#include "cli/driven_task.h"
 #include "cli/options.h"
 #include "cli/setup.h"
 #include "evidence/wild_hands.h"
-#include "haptics/haptic_loop.h"
-#include "haptics/scene_eyes.h"
 #include "world/model.h"
 #include "world/state.h"
 
 namespace filum {
 namespace {
 
-constexpr std::int64_t kTick = 1000;  // [us], of the hands
 constexpr const char* kTaskBench = "task-";
 
 struct BenchOptions {
@@ -35,36 +32,6 @@ struct BenchOptions {
 
 /// One task of every kind of scene.
 const std::vector<std::string> kWildTasks = {"knot-square", "needle-loading", "card-stitches", "vessel-stitch", "grasp-transfer", "press-to-target"};
-
-/// The task as its demonstration drives it.
-DrivenTask open_task(const std::string& root, const std::string& task) {
-  struct Hands {
-    explicit Hands(InputDevices inputs) : demonstrator(inputs.demonstrator), loop(std::move(inputs.devices)) {}
-    Demonstrator* demonstrator;
-    std::optional<SceneEyes> eyes;
-    HapticLoop loop;
-    std::int64_t next_us = 0;
-  };
-  auto hands = std::make_shared<Hands>(open_inputs("demo", root, task));
-  DrivenTask driven;
-  driven.model = load_setup(root, task).model;
-  driven.inputs = [hands](const World& world) {
-    if (!hands->eyes && hands->demonstrator != nullptr) {
-      hands->eyes.emplace(world.observation(), world.description());
-      hands->demonstrator->look_through(&*hands->eyes);
-    }
-    const auto now_us =
-        static_cast<std::int64_t>((world.observation().time + 0.5 * world.description().dt) * 1e6);
-    for (; hands->next_us <= now_us; hands->next_us += kTick) hands->loop.tick(hands->next_us);
-    return hands->loop.inputs().read();
-  };
-  driven.over = [hands] {
-    for (std::size_t i = 0; i < hands->loop.n_devices(); ++i)
-      if (hands->loop.device(i).health().state != DeviceState::finished) return false;
-    return true;
-  };
-  return driven;
-}
 
 /// All benches but those of tasks that have no demonstration, which are named on stderr.
 std::vector<std::string> possible_benches(const std::string& root, const Streams& io) {
@@ -158,7 +125,7 @@ int run(const BenchOptions& o, const Streams& io) {
                 "nodes", "contacts", "dt ms", "steps", "p50 ms", "p99 ms", "max ms", "real time",
                 "reference ms", "p50/ref");
   }
-  const auto opener = [&](const std::string& task) { return open_task(o.common.root, task); };
+  const auto opener = [&](const std::string& task) { return driven_task(o.common.root, task); };
   const auto results = run_benches(names, opener, o.common.json ? BenchProgress() : [&io](const BenchResult& r) { print_line(r, io); });
   if (o.common.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "cli/driven_task.h"
 #include "cli/options.h"
 #include "cli/setup.h"
 #include "devices/sample_faults.h"
@@ -75,30 +76,50 @@ Check check_timer() {
           ok ? "" : "Close other programs; on a laptop plug in the charger; a virtual machine needs cores of its own."};
 }
 
-// Time of a step of the scene as it stands at the beginning of a task, tools moving.
-Check check_speed(const std::string& root) {
-  const Setup setup = load_setup(root, "knot-square");
-  World world(setup.model);
-  const double dt = world.description().dt;
-  Inputs inputs;
-  for (std::size_t i = 0; i < inputs.tools.size(); ++i) {
-    inputs.tools[i].X_WD = world.observation().tools[i].X_WT;
-    inputs.tools[i].valid = true;
-  }
+constexpr double kFirstThrow = 13.0;              // [s], of the demonstration, in which the first throw is laid and drawn tight
+constexpr std::int64_t kMostPatience = 8'000'000;  // [us]
+
+/// How long each step of the square knot's first throw takes [ms], by its demonstration at full speed. A machine too slow for it is
+/// asked for no more than kMostPatience.
+std::vector<double> first_throw_steps(const std::string& root, double& dt) {
+  const DrivenTask task = driven_task(root, "knot-square");
+  World world(task.model);
+  dt = world.description().dt;
   std::vector<double> ms;
-  for (int i = 0; i < 300; ++i) {
-    inputs.tools[0].X_WD.p.z() += 2e-6;
+  const std::int64_t give_up = steady_now_us() + kMostPatience;
+  while (world.observation().time < kFirstThrow && steady_now_us() < give_up) {
+    const Inputs inputs = task.inputs(world);
     const std::int64_t begin = steady_now_us();
     world.step(inputs);
     ms.push_back(1e-3 * static_cast<double>(steady_now_us() - begin));
   }
+  return ms;
+}
+
+/// Times real time of the slowest second of scene; a last part of a second counts as the rest of one.
+double slowest_second(const std::vector<double>& ms, double dt) {
+  const auto window = std::min(ms.size(), static_cast<std::size_t>(1.0 / dt + 0.5));
+  double sum = 0.0, most = 0.0;
+  for (std::size_t i = 0; i < ms.size(); ++i) {
+    sum += ms[i] - (i >= window ? ms[i - window] : 0.0);
+    if (i + 1 >= window) most = std::max(most, sum);
+  }
+  return most > 0.0 ? 1e3 * dt * static_cast<double>(window) / most : 0.0;
+}
+
+/// A late step is made up for by those after it; a second in which there are too many of them is seen as slow motion.
+Check check_speed(const std::string& root) {
+  double dt = 0.0;
+  std::vector<double> ms = first_throw_steps(root, dt);
+  const double slowest = slowest_second(ms, dt), seconds = static_cast<double>(ms.size()) * dt;
+  const auto late = std::count_if(ms.begin(), ms.end(), [dt](double one) { return one > 1e3 * dt; });
   std::sort(ms.begin(), ms.end());
-  const double p50 = ms[ms.size() / 2], p99 = ms[ms.size() * 99 / 100];
-  const bool ok = p99 <= 1e3 * dt;
+  const bool whole = seconds >= kFirstThrow - 1.5 * dt, ok = whole && slowest >= 1.0;
   return {"speed", ok,
-          "step of knot-square: " + number(p50, 2) + " ms (median), " + number(p99, 2) + " ms (p99), of " + number(1e3 * dt, 1) +
-              " ms there are",
-          ok ? "" : "The scene will run slower than real time, and say so. Use a faster machine or close other programs."};
+          "first throw of knot-square, " + number(seconds, 1) + " s" + (whole ? "" : " of " + number(kFirstThrow, 1) + " (then given up)") + " at full speed: step " +
+              number(ms[ms.size() / 2], 2) + " ms (median), " + number(ms[ms.size() * 99 / 100], 2) + " ms (p99), of " + number(1e3 * dt, 1) + " ms there are; " +
+              std::to_string(late) + " of " + std::to_string(ms.size()) + " steps late; slowest second at " + number(slowest, 2) + " times real time",
+          ok ? "" : "A knot will be tied in slow motion at times, and the trainer says so. Use a faster machine or close other programs."};
 }
 
 Check check_devices(const std::string& serial) {
@@ -157,6 +178,8 @@ const char* advice_for(StoreTrouble trouble) {
     case StoreTrouble::kNoFolder: return "Give a folder, or the name of one that can be made, with --store.";
     case StoreTrouble::kNotWritable: return "Choose a folder that you may write with --store, or ask its owner for the right.";
     case StoreTrouble::kNewer: return "Use the newer Filum that made it, or choose another folder with --store.";
+    case StoreTrouble::kLocked: return "End the other program that uses the store; nothing in it was changed.";
+    case StoreTrouble::kNoRoom: return "Make room on the disk of the store, or choose another folder with --store.";
     case StoreTrouble::kDatabase: break;
   }
   return "End other programs that use the store, see that its files may be written and that the disk has room.";
@@ -170,7 +193,9 @@ Check check_store(const std::string& folder) {
     const double free_gb = statvfs(folder.c_str(), &disk) == 0
                                ? 1e-9 * static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize)
                                : 0.0;
-    std::string detail = folder + ": " + std::to_string(store.list().size()) + " sessions, " + number(free_gb, 1) + " GB free";
+    const auto sessions = store.list();
+    const auto cut_short = std::count_if(sessions.begin(), sessions.end(), [](const StoreEntry& e) { return !e.finished; });
+    std::string detail = folder + ": " + std::to_string(sessions.size()) + " sessions" + (cut_short > 0 ? " (" + std::to_string(cut_short) + " cut short or running)" : "") + ", " + number(free_gb, 1) + " GB free";
     if (!problems.empty()) return {"store", false, detail + "; " + problems[0].id + ": " + problems[0].what, problems[0].advice};
     const bool room = free_gb > 0.5;
     return {"store", room, detail, room ? "" : "Make room on the disk: a session takes a few megabytes a minute."};

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "cli/options.h"
 #include "cli/session_files.h"
 #include "session/export.h"
@@ -17,27 +18,39 @@ struct ExportOptions {
   bool json = false;
 };
 
-int print_files(const std::vector<std::string>& files, bool json, const Streams& io) {
+void print_files(const std::vector<std::string>& files, const std::vector<std::string>& damage, bool json, const Streams& io) {
   if (json) {
-    print_json(io.out, {{"files", files}});
+    print_json(io.out, {{"files", files}, {"damage", damage}});
   } else {
     for (const std::string& file : files) std::fprintf(io.out, "%s\n", file.c_str());
   }
-  return kDone;
+}
+
+/// What can be read of a recording: without the simulated table where the files of its scene are damaged.
+std::vector<Table> readable_tables(const RecordingReader& recording, bool damaged) {
+  std::vector<Table> tables = recorded_tables(recording);
+  try {
+    const RecordedSetup recorded(recording);
+    World world(recorded.setup().model);
+    tables.push_back(simulated_table(recording, world));
+  } catch (const InputError&) {
+    if (!damaged) throw;
+  }
+  return tables;
 }
 
 int run(const ExportOptions& o, const Streams& io) {
   const RecordingReader recording(o.file);
-  if (o.format == "bids") return print_files(export_bids(recording, o.folder), o.json, io);
-  std::vector<Table> tables = recorded_tables(recording);
-  {
-    const RecordedSetup recorded(recording);
-    World world(recorded.setup().model);
-    tables.push_back(simulated_table(recording, world));
+  const std::vector<std::string> damage = recording.find_damage();
+  std::vector<std::string> files;
+  if (o.format == "bids") {
+    files = export_bids(recording, o.folder);
+  } else {
+    const std::vector<Table> tables = readable_tables(recording, !damage.empty());
+    files = o.format == "csv" ? export_csv(tables, recording.meta(), o.folder) : export_hdf5(tables, recording.meta(), o.folder);
   }
-  const auto files = o.format == "csv" ? export_csv(tables, recording.meta(), o.folder)
-                                       : export_hdf5(tables, recording.meta(), o.folder);
-  return print_files(files, o.json, io);
+  print_files(files, damage, o.json, io);
+  return tell_damage(io.err, o.file, damage, kDone);
 }
 
 }  // namespace

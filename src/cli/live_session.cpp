@@ -179,7 +179,7 @@ void LiveSession::store_events() {
 }
 
 void LiveSession::store_event(const TaskEvent& e) {
-  if (options_.recorder != nullptr) options_.recorder->record_event({scored_.step, e.time, e.name, e.tool, e.value, e.unit});
+  if (options_.recorder != nullptr) options_.recorder->record_event({scored_.step, e.time, e.name, e.tool, e.value, e.unit, std::string_view(e.text)});
   if (options_.show_event) options_.show_event(e);
 }
 

@@ -4,7 +4,9 @@
 
 #include "analysis/agreement.h"
 #include "base/error.h"
+#include "cli/options.h"
 #include "cli/requests.h"
+#include "session/store.h"
 
 namespace filum {
 namespace {
@@ -34,6 +36,8 @@ std::vector<ItemMark> estimates_of(const Json& scale) {
 RatingDesk::RatingDesk(const std::string& folder, std::function<std::optional<std::string>(const std::string&)> result_of) : result_of_(std::move(result_of)) {
   try {
     ratings_ = std::make_unique<Ratings>(folder);
+  } catch (const StoreError&) {
+    throw;
   } catch (const InputError& error) {
     trouble_ = error.what();
   }

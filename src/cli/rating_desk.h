@@ -19,8 +19,12 @@ namespace filum {
 
 class RatingDesk {
  public:
-  /// `result_of`: JSON text of a stored session's result, or nothing. A folder whose ratings cannot be opened is told with every answer.
+  /// `result_of`: JSON text of a stored session's result, or nothing. A folder whose ratings cannot be opened is told with every answer;
+  /// ratings of a newer program throw StoreError.
   RatingDesk(const std::string& folder, std::function<std::optional<std::string>(const std::string&)> result_of);
+
+  /// Why no rating can be given, empty: they can.
+  const std::string& trouble() const { return trouble_; }
 
   std::optional<std::string> get(std::string_view path);
   std::optional<std::string> post(std::string_view path, const std::string& body);

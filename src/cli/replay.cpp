@@ -17,8 +17,26 @@ struct ReplayOptions {
   bool json = false;
 };
 
+nlohmann::ordered_json json_of(const RecordingReader& recording, const ReplayResult& result, const std::vector<std::string>& damage) {
+  nlohmann::ordered_json document = {{"identical", result.identical}, {"first_difference", nullptr}, {"steps", result.steps}};
+  if (result.first_difference) document["first_difference"] = {{"step", result.first_difference->step}, {"array", result.first_difference->array}};
+  document["recorded_by"] = recording.meta().program;
+  document["finished"] = recording.finished();
+  document["damage"] = damage;
+  return document;
+}
+
+void print_text(const ReplayResult& result, const Streams& io) {
+  if (result.first_difference) {
+    std::fprintf(io.out, "first difference at step %" PRIu64 " in array %s\n", result.first_difference->step, result.first_difference->array.c_str());
+  } else {
+    std::fprintf(io.out, "identical: %" PRIu64 " steps%s\n", result.steps, result.damage.empty() ? "" : ", the last that can be read");
+  }
+}
+
 int run(const ReplayOptions& o, const Streams& io) {
   const RecordingReader recording(o.file);
+  require_steps(recording);
   const RecordedSetup recorded(recording);
   World world(recorded.setup().model);
   const ReplayResult result = replay(recording, world);
@@ -26,23 +44,12 @@ int run(const ReplayOptions& o, const Streams& io) {
     std::fprintf(io.err, "filum: recorded by %s, replayed by %s: equal states are promised within one build only\n",
                  recording.meta().program.c_str(), program_text().c_str());
   }
-  if (o.json) {
-    nlohmann::ordered_json document = {{"identical", result.identical}, {"first_difference", nullptr}, {"steps", result.steps}};
-    if (result.first_difference) {
-      document["first_difference"] = {{"step", result.first_difference->step}, {"array", result.first_difference->array}};
-    }
-    document["recorded_by"] = recording.meta().program;
-    document["finished"] = recording.finished();
-    print_json(io.out, document);
-  } else if (result.identical) {
-    std::fprintf(io.out, "identical: %" PRIu64 " steps\n", result.steps);
-  } else if (result.first_difference) {
-    std::fprintf(io.out, "first difference at step %" PRIu64 " in array %s\n", result.first_difference->step,
-                result.first_difference->array.c_str());
-  } else {
-    std::fprintf(io.out, "the recording holds no step\n");
-  }
-  return result.identical ? kDone : kFailed;
+  const std::vector<std::string> damage = recording.find_damage();
+  if (o.json)
+    print_json(io.out, json_of(recording, result, damage));
+  else
+    print_text(result, io);
+  return tell_damage(io.err, o.file, damage, result.identical ? kDone : kFailed);
 }
 
 }  // namespace

@@ -36,10 +36,8 @@ ReplaySession::ReplaySession(const std::string& file, std::string session, ShowF
       show_state_(std::move(show_state)),
       task_(recorded_.setup().task, world_.description()) {
   if (recording_.score()) stored_score_ = recording_.score()->json;
-  StepRecord record;
-  std::uint64_t steps = 0;
-  for (auto cursor = recording_.steps(); cursor.next(record);) ++steps;
-  duration_ = static_cast<double>(steps) * recording_.meta().dt;
+  require_steps(recording_);
+  duration_ = static_cast<double>(recording_.last_step()) * recording_.meta().dt;
   interval_ = std::max(interval_, duration_ / kMostPictures);
 }
 
@@ -58,20 +56,31 @@ void ReplaySession::start() {
 void ReplaySession::load() {
   try {
     double next = interval_;
-    replay(recording_, world_, [this, &next](const StepRecord&, const Observation& o) {
+    const ReplayResult result = replay(recording_, world_, [this, &next](const StepRecord&, const Observation& o) {
       if (quit_.load()) throw Stopped{};
       task_.observe(o);
       if (o.time + 1e-9 < next) return;
       next += interval_;
       keep_picture(o);
     }, true);
+    if (!result.damage.empty()) end_here();
   } catch (const Stopped&) {
   } catch (const std::exception&) {
-    // Damaged behind this point: what could be read stays to be seen, and its length is what is told.
-    const std::lock_guard lock(mutex_);
-    duration_ = pictures_.empty() ? 0.0 : pictures_.back().observation.time;
-    changed_ = true;
+    end_here();
   }
+}
+
+/// Behind this point nothing can be replayed: what could stays to be seen, and its length is what is told.
+void ReplaySession::end_here() {
+  const std::lock_guard lock(mutex_);
+  duration_ = pictures_.empty() ? 0.0 : pictures_.back().observation.time;
+  changed_ = true;
+}
+
+std::string ReplaySession::damage() const {
+  std::string all;
+  for (const std::string& one : recording_.find_damage()) all += (all.empty() ? "This recording is damaged: " : "; ") + one;
+  return all.empty() ? all : all + ". What can be read is shown.";
 }
 
 void ReplaySession::keep_picture(const Observation& observation) {

@@ -28,6 +28,8 @@ class ReplaySession {
   std::shared_ptr<const Model> model() const { return recorded_.setup().model; }
   /// Score as stored in the recording, JSON text; empty if there is none.
   const std::string& stored_score() const { return stored_score_; }
+  /// What is wrong with the recording, in one sentence; empty: nothing. What can be read is shown.
+  std::string damage() const;
 
   // Any thread.
   void start();
@@ -41,6 +43,7 @@ class ReplaySession {
     TaskView task;
   };
   void load();
+  void end_here();
   void keep_picture(const Observation& observation);
   void show_loop();
   bool show_next(double elapsed);

@@ -1,6 +1,7 @@
 // filum score FILE: replays a recording and scores it anew.
 
 #include <CLI/CLI.hpp>
+#include <cinttypes>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -20,13 +21,18 @@ int run(const ScoreOptions& o, const Streams& io) {
   const RecordingReader recording(o.file);
   const Rescored rescored = rescore(recording);
   const Result& r = rescored.result;
+  const std::vector<std::string> damage = recording.find_damage();
+  const int code = tell_damage(io.err, o.file, damage, kDone);
   if (o.json) {
     nlohmann::ordered_json document = result_document(r);
     document["replay_identical"] = rescored.replay.identical;
+    document["damage"] = damage;
     print_json(io.out, document);
-    return kDone;
+    return code;
   }
-  if (!rescored.replay.identical) {
+  if (!rescored.replay.damage.empty()) {
+    std::fprintf(io.err, "filum: the score is of the %" PRIu64 " steps that can be read\n", rescored.replay.steps);
+  } else if (!rescored.replay.identical) {
     std::fprintf(io.err, "filum: this build steps the recording differently; the score is of what it computes\n");
   }
   const std::string knot = r.has_knot ? ", knot " + r.knot.knot_class : "";
@@ -35,7 +41,7 @@ int run(const ScoreOptions& o, const Streams& io) {
     std::fprintf(io.out, "  %5.1f / %4.1f  %-16s %s\n", item.points, item.max_points, item.name.c_str(), item.why.c_str());
   }
   for (const std::string& line : r.verdict) std::fprintf(io.out, "%s\n", line.c_str());
-  return kDone;
+  return code;
 }
 
 }  // namespace

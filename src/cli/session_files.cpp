@@ -40,7 +40,22 @@ std::string new_folder() {
   return name;
 }
 
+[[noreturn]] void refuse_damaged(const RecordingReader& recording, const std::vector<std::string>& damage) {
+  std::string all;
+  for (const std::string& one : damage) all += (all.empty() ? "" : "; ") + one;
+  throw InputError(recording.file(), "recording", all, "an undamaged recording");
+}
+
+/// The files that stand in for those of the task: without one of them another scene would be stepped.
+bool changes_the_scene(const std::string& damage) {
+  for (const char* name : {kModelOverride, kDial})
+    if (damage.find(name) != std::string::npos) return true;
+  return false;
+}
+
 Setup setup_of(const RecordingReader& recording, const std::string& folder) {
+  for (const std::string& one : recording.damaged_texts())
+    if (changes_the_scene(one)) refuse_damaged(recording, {one});
   recording.write_sources(folder);
   const std::string model = folder + "/" + kModelOverride;
   const std::string dial = folder + "/" + kDial;
@@ -89,10 +104,14 @@ std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& se
 }
 
 RecordedSetup::RecordedSetup(const RecordingReader& recording) : folder_(new_folder()) {
+  std::error_code ignored;
   try {
     setup_ = setup_of(recording, folder_);
+  } catch (const InputError&) {
+    fs::remove_all(folder_, ignored);
+    if (const auto damage = recording.find_damage(); !damage.empty()) refuse_damaged(recording, damage);
+    throw;
   } catch (...) {
-    std::error_code ignored;
     fs::remove_all(folder_, ignored);
     throw;
   }
@@ -103,7 +122,20 @@ RecordedSetup::~RecordedSetup() {
   fs::remove_all(folder_, ignored);
 }
 
+void require_steps(const RecordingReader& recording) {
+  if (recording.last_step() > 0) return;
+  const auto damage = recording.find_damage();
+  if (!damage.empty()) refuse_damaged(recording, damage);
+  throw InputError(recording.file(), "steps", "none", "at least one: there is nothing to replay");
+}
+
+int tell_damage(std::FILE* err, const std::string& file, const std::vector<std::string>& damage, int code) {
+  for (const std::string& one : damage) std::fprintf(err, "filum: %s: recording: found %s, expected an undamaged recording\n", file.c_str(), one.c_str());
+  return damage.empty() ? code : kBadInput;
+}
+
 Rescored rescore(const RecordingReader& recording) {
+  require_steps(recording);
   const RecordedSetup recorded(recording);
   World world(recorded.setup().model);
   TaskSession task(recorded.setup().task, world.description());

@@ -1,11 +1,13 @@
 #pragma once
 // Between sessions on disk and sessions in memory: recorders for runs, worlds for recordings, scores of recordings.
 
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "analysis/recorded_series.h"
 #include "cli/setup.h"
@@ -20,7 +22,8 @@ namespace filum {
 std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& setup, const std::string& input,
                                         const std::string& participant = "", const std::string& calibration = "");
 
-/// The scene and the rules a recording was made with, from the files stored in it. The folder with these files lives as long
+/// The scene and the rules a recording was made with, from the files stored in it. Throws InputError, where they are damaged naming
+/// the damage. The folder with these files lives as long
 /// as this object.
 class RecordedSetup {
  public:
@@ -43,7 +46,13 @@ struct Rescored {
 /// A recording ready for analysis; where no device measured the squeeze, that of the simulation, replayed.
 RecordedSession open_session(const std::string& file);
 
-/// Replays a recording to its end and scores it anew.
+/// Throws InputError for a recording without a step: there is nothing to replay.
+void require_steps(const RecordingReader& recording);
+
+/// Names what is damaged on `err`, a line for each place. Exit code: kBadInput where anything is, else `code`.
+int tell_damage(std::FILE* err, const std::string& file, const std::vector<std::string>& damage, int code);
+
+/// Replays a recording to its end, or to where it is damaged, and scores it anew.
 Rescored rescore(const RecordingReader& recording);
 
 /// The keys that `run` and `score` share: result_json() without the curves.

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/yaml_file.h"
 #include "world/brain_model.h"
 #include "world/model.h"
 #include "world/task_folder.h"
@@ -70,6 +71,15 @@ std::vector<std::string> model_names(const std::string& root) {
   std::sort(names.begin(), names.end());
   return names;
 }
+
+std::string model_kind(const std::string& root, const std::string& name) {
+  const YamlNode file = YamlNode::load(root + "/models/" + name + ".yaml");
+  if (!file.has("format")) return "";
+  const std::string format = file.text("format"), before = "filum-";  // filum-KIND/1
+  return format.starts_with(before) ? format.substr(before.size(), format.find('/') - before.size()) : "";
+}
+
+bool is_for_tasks(const std::string& kind) { return kind == "suture" || kind == "brain"; }
 
 std::string demonstration_file(const std::string& root, const std::string& task) {
   return root + "/" + task_folder(root, task) + "/demonstration.yaml";

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "cli/options.h"
 #include "cli/session_files.h"
+#include "cli/trainer_check.h"
 #include "training/needle_task.h"
 #include "training/stitch_guide.h"
 
@@ -16,21 +17,6 @@ namespace {
 
 constexpr double kHardestSqueeze = 0.25;  // [rad] beyond closure: 3 N with the instruments' grip stiffness
 constexpr std::size_t kMostCommands = 256;
-
-/// A model that no task can take is refused before anybody waits for it.
-void check_model(const TrainerOptions& options) {
-  if (options.model_file.empty()) return;
-  std::string last;
-  for (const std::string& task : task_names(options.root)) {
-    try {
-      load_setup(options.root, task, options.model_file);
-      return;
-    } catch (const InputError& error) {
-      last = error.what();
-    }
-  }
-  throw InputError("--model", "model", options.model_file, "a model that a task can take (the last one said: " + last + ")");
-}
 
 HelloView hello_of(const TrainerOptions& options) {
   std::vector<std::string> problems;
@@ -99,8 +85,7 @@ Trainer::Trainer(TrainerOptions options)
     : options_(std::move(options)),
       lab_({options_.root, options_.datasets.empty() ? options_.store_folder + "/datasets" : options_.datasets, options_.store_folder, options_.serial_port, options_.calibration, options_.camera, camera_program()},
            [this](const std::string& session) { return recording_of(session); }) {
-  check_model(options_);
-  if (!options_.hands.empty()) open_live_inputs({"", "", options_.hands, options_.motion_scale}, options_.root);  // refused before anybody waits
+  check_trainer_options(options_);
   if (options_.igtl_out > 0) stream_ = std::make_unique<ToolStream>(options_.igtl_out);
   ServerOptions server;
   server.address = options_.address;
@@ -125,7 +110,9 @@ void Trainer::open_store() {
   try {
     store_.emplace(options_.store_folder);
     desk_.emplace(options_.store_folder, [this](const std::string& session) { return result_of(session); });
-  } catch (const InputError& error) {
+    if (!desk_->trouble().empty()) store_warning_ = "Ratings are NOT being stored: " + desk_->trouble();
+  } catch (const StoreError& error) {
+    if (error.trouble == StoreTrouble::kNewer) throw;  // the right program is there to be used: nothing is to be stored beside it
     store_warning_ = std::string("Sessions are NOT being stored: ") + error.what();
   }
   view_.warning = store_warning_;
@@ -209,7 +196,7 @@ void Trainer::look_after() {
 void Trainer::warn_of_recording() {
   if (!recorder_) return;
   const RecorderStatus status = recorder_->status();
-  const std::string warning = status.healthy ? std::string() : "The recording is in trouble: " + status.message;
+  const std::string warning = status.healthy ? store_warning_ : "The recording is in trouble: " + status.message;
   if (warning == view_.warning) return;
   view_.warning = warning;
   publish_state(view_.state);
@@ -249,6 +236,7 @@ void Trainer::stop_all() {
   view_.exam = false;
   if (replay_) {
     replay_.reset();
+    view_.warning = store_warning_;
     publish_state("idle");
   }
 }
@@ -397,6 +385,8 @@ void Trainer::open_replay(const std::string& session) {
       [server = server_.get()](const ReplayView& replay) { server->publish_replay(replay); });
   colours_ = std::make_shared<WallColours>(replay_->model());
   server_->publish_scene(replay_->scene());
+  const std::string damage = replay_->damage();
+  if (!damage.empty()) view_.warning = damage;
   const std::string result = result_message(replay_->stored_score(), session);
   if (!result.empty()) server_->publish_result(result);
   publish_state("replay");

@@ -23,7 +23,7 @@ nlohmann::ordered_json json_of(const ValidationProblem& p) {
       {"name", p.name},     {"source", p.source},       {"quantity", p.quantity},
       {"unit", p.unit},     {"expected", p.expected},   {"got", p.got},
       {"error", p.error},   {"tolerance", p.tolerance}, {"order", p.order ? Json(*p.order) : Json(nullptr)},
-      {"passed", p.passed}, {"seconds", p.seconds}};
+      {"passed", p.passed}, {"seconds", p.seconds},   {"note", p.note}};
 }
 
 void print_line(const ValidationProblem& p, const Streams& io) {

@@ -46,6 +46,7 @@ void list_spatula(ProblemList& list) {
   p.source = "Hansen et al. 2004, fig. 15: 50 spatulas of 0.005-0.25 m2 on a 15 x 15 face, no step in the force";
   p.quantity = "largest step (change of slope) as a share of the range";
   p.tolerance = 0.02;
+  p.note = "no order: the mesh is that of the paper's figure";
   list.push_back({p, [](ValidationProblem& r) { r.got = largest_step(forces(true)); }});
   p.name = "spatula-partial-projection";
   p.source = "the same; without partial projection the force goes in steps";

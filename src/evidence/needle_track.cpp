@@ -85,6 +85,7 @@ double tear_ratio(double bite) {
 
 void list_puncture(ProblemList& list) {
   ValidationProblem p;
+  p.note = "no order: one point, no mesh; the force is seen once a step of 1 um, up to 7 % of F0 late";
   p.source = "puncture when the normal part of the point's force is F0: along the needle F0 / sin(angle) (needle_track.h)";
   for (const double degrees : {90.0, 60.0, 45.0}) {
     const double angle = degrees * 3.14159265358979323846 / 180.0;
@@ -98,6 +99,7 @@ void list_puncture(ProblemList& list) {
 
 void list_insertion(ProblemList& list) {
   ValidationProblem p;
+  p.note = "no order: no mesh; a straight line fitted through steps of 1 or 2 um";
   p.name = "track-friction-slope";
   p.source = "F = F_cut + f d, linear in the depth d (Okamura, Simone & O'Leary, IEEE TBME 51:1707, 2004)";
   p.quantity = "slope of force against depth, f = 10 N/m";
@@ -113,6 +115,7 @@ void list_insertion(ProblemList& list) {
 
 void list_energy(ProblemList& list) {
   ValidationProblem p;
+  p.note = "no order: no mesh; steps of 1 um";
   p.name = "track-energy";
   p.source = "work of the hand = friction + cutting + what snaps free at the punctures + what is stored";
   p.quantity = "work over dissipated and stored energy, one passage through 1 mm";
@@ -123,6 +126,7 @@ void list_energy(ProblemList& list) {
 
 void list_tearing(ProblemList& list) {
   ValidationProblem p;
+  p.note = "no order: no mesh; the load is seen once a step of 1 um";
   p.source = "a stitch bears tear x bite (orders of magnitude: clinical.md 4)";
   for (const double bite : {0.2e-3, 0.6e-3}) {
     p.name = bite < 0.4e-3 ? "track-tear-small" : "track-tear-large";

@@ -15,6 +15,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kLength = 0.5, kRadius = 1.55e-3, kSlack = 0.3;  // [m], [m], [-]
 constexpr double kTurns = 8.0;
+constexpr int kLookEvery = 50;  // steps, at the linking number
 
 /// The rod of dismech-newton's plectoneme, 1.3 MPa; a hundredth of its weight, so that it comes to rest soon.
 RodMaterial ply_material() {
@@ -61,8 +62,9 @@ bool Plectoneme::run(int steps, double come, double turn) {
     for (int i : {n - 2, n - 1}) probe.rod.boundary.target(0, i) -= come / steps;
     probe.rod.boundary.target(3, n - 2) += turn / steps;
     if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return false;
+    turned_ += turn / (2.0 * kPi * steps);
+    if (k % kLookEvery == 0) farthest_ = std::max(farthest_, std::abs(linking() - turned_));
   }
-  turned_ += turn;
   return true;
 }
 
@@ -121,14 +123,15 @@ void list_measure(ProblemList& list, const char* name, const char* quantity, dou
   p.quantity = quantity;
   p.expected = 1.0;
   p.tolerance = tolerance;
+  p.note = "no order: medians over contacts, whose number and places change with the mesh; 300 edges";
   list.push_back({p, [measure](ValidationProblem& r) { r.got = wound() ? measure(*wound()) : std::nan(""); }});
 }
 
 }  // namespace
 
 void list_plectoneme(ProblemList& list) {
-  list_measure(list, "radius", "radius of the ply over that of the rod", 0.05, [](const Plectoneme& p) { return p.ply().radius / kRadius; });
-  list_measure(list, "tension", "tension over theory", 0.07, [](const Plectoneme& p) {
+  list_measure(list, "radius", "radius of the ply over that of the rod", 0.03, [](const Plectoneme& p) { return p.ply().radius / kRadius; });
+  list_measure(list, "tension", "tension over theory", 0.03, [](const Plectoneme& p) {
     const Ply ply = p.ply();
     return p.tension() * ply.radius * ply.radius / (p.probe.rod.material.EI * ply_tension(ply.angle));
   });
@@ -137,6 +140,8 @@ void list_plectoneme(ProblemList& list) {
     return p.moment() * ply.radius / (p.probe.rod.material.EI * ply_moment(ply.angle));
   });
   list_measure(list, "linking", "twist and writhe over the turns given", 0.1 / kTurns, [](const Plectoneme& p) { return p.linking() / kTurns; });
+  list_measure(list, "linking-always", "1 + largest difference, while it is wound, of twist and writhe from the turns given so far", 0.1,
+               [](const Plectoneme& p) { return 1.0 + p.farthest(); });
 }
 
 }  // namespace filum

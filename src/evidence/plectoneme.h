@@ -25,12 +25,13 @@ class Plectoneme {
   double tension() const;         // [N], along the line of the ends
   double moment() const;          // [N m], twisting
   double linking() const;         // turns: twist and writhe of the rod
+  double farthest() const { return farthest_; }  // turns: largest difference of that from the turns given so far, looked at every 50 steps
 
   RodProbe probe;
 
  private:
   bool run(int steps, double come, double turn);
-  double turned_ = 0.0;  // [rad]
+  double turned_ = 0.0, farthest_ = 0.0;  // turns
 };
 
 /// F R^2/B and M R/B of a ply of angle a [rad].

@@ -71,4 +71,6 @@ double observed_order(double coarse, double middle, double fine) {
   return std::log2(std::abs((coarse - middle) / (middle - fine)));
 }
 
+double order_of_errors(double coarse, double fine, double ratio) { return std::log(std::abs(coarse / fine)) / std::log(ratio); }
+
 }  // namespace filum

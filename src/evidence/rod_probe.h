@@ -32,5 +32,7 @@ struct RodProbe {
 
 /// Order of convergence from results at edge lengths 4 l, 2 l and l.
 double observed_order(double coarse, double middle, double fine);
+/// The same where the answer is known: from the errors of two resolutions whose edge lengths have this ratio.
+double order_of_errors(double coarse, double fine, double ratio = 2.0);
 
 }  // namespace filum

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
 
+#include "evidence/sewn_bench.h"
 #include "evidence/vessel_bench.h"
 #include "world/model.h"
 #include "world/vessel_model.h"
@@ -50,12 +53,16 @@ std::shared_ptr<const Model> sized(const Model& of, const StitchBench& b) {
 }  // namespace
 
 std::vector<StitchBench> stitch_benches() {
-  return {{"seed-vessel", 14, 2, false, 100, 8.0, 20.0}, {"task-anastomosis", 24, 15, true, 150, 8.0, 20.0}};
+  return {{"seed-vessel", 14, 2, false, 100, 8.0, 20.0, 0}, {"task-anastomosis", 24, 15, true, 150, 8.0, 20.0, 0}, {"task-anastomosis-8", 24, 15, true, 150, 8.0, 20.0, 8}};
 }
 
 void run_stitch_bench(const StitchBench& bench, BenchResult& r, const StepTimer& timer, const TaskOpener& open_task) {
   const DrivenTask driven = open_task(kTask);
-  World world(sized(*driven.model, bench));
+  std::shared_ptr<const Model> model = sized(*driven.model, bench);
+  std::optional<State> sewn;
+  if (bench.sewn > 0) std::tie(model, sewn.emplace()) = sewn_stumps(model, bench.sewn);
+  World world(model);
+  if (sewn) world.restore(*sewn);
   r.dt_ms = 1e3 * world.description().dt;
   r.steps = static_cast<int>(std::lround((bench.to - bench.from) / world.description().dt));
   while (world.observation().time < bench.from) world.step(driven.inputs(world));

@@ -14,6 +14,8 @@ ProblemList all_problems() {
   list_elastica(list);
   list_dynamics(list);
   list_twist(list);
+  list_localized_helix(list);
+  list_frames(list);
   list_friction(list);
   list_knots(list);
   list_plectoneme(list);

@@ -21,6 +21,7 @@ struct ValidationProblem {
   std::optional<double>
       order;  // observed order of convergence in the edge length, where three resolutions were solved
   std::optional<double> least_order;  // that `order` must reach to pass
+  std::string note;  // why there is no `order`, and what else the figure needs to be read; may be empty
   bool passed = false;
   double seconds = 0.0;  // it took to solve
 

@@ -27,6 +27,8 @@ constexpr double kMeetingReach = 0.5;   // of the wall's thickness
 constexpr double kMeetingShare = 0.1;   // stiffness of a node against a face, of lambda times thickness: a cube of the wall a tenth as wide as high
 constexpr double kLeastStretch = 0.3, kMostStretch = 16.0;  // [-], det F and |F|^2 of a node beyond which the first matrix is only turned
 constexpr int kMostPairs = 64;
+constexpr double kLateGrowth = 1.6;     // of the tolerance from one late iteration to the next
+constexpr double kLargestLate = 3e-5;   // [N]: a third of what blood at 100 mmHg presses on a node of an artery with
 constexpr double kViolent = 10.0;    // times the tolerance: unbalanced force of a node at the first guess that is too far off to be trusted
 
 using Vector = Eigen::VectorXd;
@@ -104,6 +106,11 @@ double rounding(const WallElements& elements, int n, bool single_precision, doub
 }
 
 }  // namespace
+
+double late_tolerance(const WallOptions& o, int iterations) noexcept {
+  const int late = std::max(0, iterations - o.strict_iterations + 1);
+  return std::max(o.tolerance, std::min(kLargestLate, o.tolerance * std::pow(kLateGrowth, late)));
+}
 
 VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const WallOptions& options)
     : mesh_(std::move(mesh)), options_(options), elements_(mesh_, layers, options.single_precision), neighbours_(find_neighbours(mesh_)), tree_(face_triangles(mesh_), mesh_.nodes) {
@@ -427,7 +434,7 @@ void VesselWall::accept(WallState& state) noexcept {
 void VesselWall::iterate(WallState& state, WallSummary& summary) noexcept {
   for (;;) {
     summary.residual = residual_.colwise().norm().maxCoeff();
-    summary.converged = summary.residual <= options_.tolerance;
+    summary.converged = summary.residual <= late_tolerance(options_, summary.iterations);
     const bool settled = summary.iterations > 0 || summary.residual <= kQuiet * options_.tolerance;  // what is left creeps home
     if ((summary.converged && settled) || summary.iterations == options_.max_iterations) return;
     if (summary.iterations == 0) recall(state.history);

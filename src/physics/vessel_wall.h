@@ -33,12 +33,16 @@ struct WallOptions {
   double damping = 100.0;      // [1/s], against the surroundings
   double tolerance = 1e-5;     // [N], largest unbalanced force of a node
   int max_iterations = 24;
+  int strict_iterations = 1000;  // from this iteration on the tolerance grows (late_tolerance)
   int memory = 20;             // pairs of the BFGS history, kept from step to step; at most 64
   bool single_precision = true;  // of the elements' forces
 };
 
+/// [N], after so many iterations. Late ones balance what the wall swings by as it snaps back from under an instrument; the next step goes on from there.
+double late_tolerance(const WallOptions& options, int iterations) noexcept;
+
 struct WallSummary {
-  bool converged = false;
+  bool converged = false;      // within late_tolerance()
   bool sound = true;           // all numbers finite; a step that is not leaves the wall where it was, at rest
   int iterations = 0;
   double residual = 0.0;       // [N]

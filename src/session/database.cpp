@@ -67,6 +67,19 @@ std::string pragma(soci::session& sql, const std::string& text) {
   return known == soci::i_ok ? answer : "";
 }
 
+Failure failure_of(const std::exception& error) noexcept {
+  const auto* known = dynamic_cast<const soci::sqlite3_soci_error*>(&error);
+  if (known == nullptr) return Failure::kOther;
+  switch (known->result() & 0xff) {  // the higher bytes only say more
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB: return Failure::kDamage;
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED: return Failure::kLocked;
+    case SQLITE_FULL: return Failure::kNoRoom;
+    default: return Failure::kOther;
+  }
+}
+
 std::string reason(const std::exception& error) {
   std::string text = error.what();
   if (const std::size_t at = text.find(" while "); at != std::string::npos) text.erase(at);

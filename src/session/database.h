@@ -36,6 +36,10 @@ void mark(soci::session& sql, std::int32_t application_id, int format);
 /// "PRAGMA ..." with one value as the answer.
 std::string pragma(soci::session& sql, const std::string& text);
 
+/// What kind of trouble a database's error is; only damage is a reason to build anything anew.
+enum class Failure { kDamage, kLocked, kNoRoom, kOther };
+Failure failure_of(const std::exception& error) noexcept;
+
 /// SOCI's messages carry the failed statement; people need the reason only.
 std::string reason(const std::exception& error);
 

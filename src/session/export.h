@@ -20,15 +20,15 @@ struct Column {
 
 struct Table {
   std::string name;   // file name in CSV, group in HDF5
-  double rate = 0.0;  // [Hz], 0: not regular
+  double rate = 0.0;  // [Hz], of samples the mean of a tool's readings; 0: not regular
   std::string meaning;
   std::vector<Column> columns;  // all of one length
 };
 
-/// The stored channels: "inputs", "samples", "events", "array_hashes", "score".
+/// What can be read of the stored channels: "inputs", "samples", "events", "array_hashes", "score".
 std::vector<Table> recorded_tables(const RecordingReader& recording);
 
-/// Re-steps the recording in `world` (fresh from its sources): tool poses, velocities, forces, grips, thread
+/// Re-steps the recording, as far as its steps can be read, in `world` (fresh from its sources): tool poses, velocities, forces, grips, thread
 /// tension. "simulated".
 Table simulated_table(const RecordingReader& recording, World& world);
 

@@ -79,8 +79,12 @@ std::string number(double value) {
 
 std::string row_of(const std::vector<double>& cells) {
   std::string row;
-  for (const double cell : cells) row += (row.empty() ? "" : "\t") + number(cell);
-  return row + "\n";
+  for (const double cell : cells) {
+    if (!row.empty()) row += '\t';
+    row += number(cell);
+  }
+  row += '\n';
+  return row;
 }
 
 void add_pose(std::vector<double>& cells, const Pose* X) {
@@ -198,21 +202,29 @@ void write_scene(const RecordingReader& recording, const Names& names, int tool,
   finish_system(names, system, meta, rate, false, written);
 }
 
+/// Text in one cell of a table whose columns are parted by tabs.
+std::string cell_of(std::string_view text) {
+  std::string cell(text);
+  std::replace_if(cell.begin(), cell.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+  return cell.empty() ? "n/a" : cell;
+}
+
 void write_events(const RecordingReader& recording, const Names& names, std::vector<std::string>& written) {
   {
     TextOut out(names.motion / (names.prefix + "_events.tsv"), written);
-    out << "onset\tduration\ttrial_type\ttool\tmeasured\tunit\n";
+    out << "onset\tduration\ttrial_type\ttool\tmeasured\tunit\ttext\n";
     EventRecord e;
     for (auto cursor = recording.events(); cursor.next(e);) {
       const std::string unit(e.unit.view());
       out << number(e.time) + "\t0\t" + std::string(e.name.view()) + "\t" + (e.tool < 0 ? "n/a" : std::to_string(e.tool)) + "\t" +
-                 number(e.value) + "\t" + (unit == "-" || unit.empty() ? "n/a" : unit) + "\n";
+                 number(e.value) + "\t" + (unit == "-" || unit.empty() ? "n/a" : unit) + "\t" + cell_of(e.text.view()) + "\n";
     }
   }
   const Json json = {{"trial_type", {{"LongName", "Event"}, {"Description", "What happened in the scene, the task or to a device"}}},
                      {"tool", {{"Description", "Index of the tool, n/a for none"}}},
                      {"measured", {{"Description", "What the event measured, in the unit of the next column"}}},
-                     {"unit", {{"Description", "Unit of the column measured"}}}};
+                     {"unit", {{"Description", "Unit of the column measured"}}},
+                     {"text", {{"Description", "The same in words for people, n/a where there are none"}}}};
   TextOut(names.motion / (names.prefix + "_events.json"), written) << json.dump(2) + "\n";
 }
 

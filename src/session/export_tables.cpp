@@ -1,8 +1,10 @@
 // Recordings as tables: which columns there are, their units and their meaning.
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
 #include <limits>
+#include <map>
 
 #include "session/table_builder.h"
 
@@ -22,7 +24,7 @@ Table inputs_table(const RecordingReader& recording) {
   TableBuilder table("inputs", step_rate(meta), "what each step of the simulation was driven by");
   RecordCursor<StepRecord> cursor = recording.steps();
   StepRecord record;
-  while (cursor.next(record)) {
+  while (cursor.next_readable(record)) {
     table.new_row();
     table.add_integer("step", "count", "step number", static_cast<std::int64_t>(record.step));
     table.add("time", "s", "scene time at the end of the step", static_cast<double>(record.step) * meta.dt);
@@ -45,11 +47,46 @@ Table inputs_table(const RecordingReader& recording) {
   return table.take();
 }
 
+/// Mean rate [Hz] of each tool's readings, from the first to the last by the host's clock; 0 with fewer than two.
+class SampleRates {
+ public:
+  explicit SampleRates(const RecordingReader& recording) {
+    SampleRecord record;
+    for (RecordCursor<SampleRecord> cursor = recording.samples(); cursor.next_readable(record);) {
+      auto [tool, first] = tools_.try_emplace(record.tool, Tool{record.host_time_us, 0, 0});
+      tool->second.last = record.host_time_us;
+      if (!first) ++tool->second.after_the_first;
+    }
+  }
+  double of(int tool) const {
+    const auto at = tools_.find(tool);
+    if (at == tools_.end() || at->second.last <= at->second.first) return 0.0;
+    return 1e6 * static_cast<double>(at->second.after_the_first) / static_cast<double>(at->second.last - at->second.first);
+  }
+  /// That of all tools where they agree within 5 %, else 0.
+  double common() const {
+    double low = std::numeric_limits<double>::infinity(), high = 0.0;
+    for (const auto& [tool, unused] : tools_) {
+      low = std::min(low, of(tool));
+      high = std::max(high, of(tool));
+    }
+    return high > 0.0 && high <= 1.05 * low ? 0.5 * (low + high) : 0.0;
+  }
+
+ private:
+  struct Tool {
+    std::int64_t first = 0, last = 0;  // [us]
+    std::int64_t after_the_first = 0;
+  };
+  std::map<int, Tool> tools_;
+};
+
 Table samples_table(const RecordingReader& recording) {
-  TableBuilder table("samples", 0.0, "raw readings of the devices as they arrived; nothing is filled in");
+  const SampleRates rates(recording);
+  TableBuilder table("samples", rates.common(), "raw readings of the devices as they arrived, in the mean at the rate given for each tool; nothing is filled in");
   RecordCursor<SampleRecord> cursor = recording.samples();
   SampleRecord record;
-  while (cursor.next(record)) {
+  while (cursor.next_readable(record)) {
     table.new_row();
     const Vec3 p = record.has_pose ? record.X_WD.p : Vec3::Constant(kAbsent);
     const Quat q = record.has_pose ? record.X_WD.q : Quat(kAbsent, kAbsent, kAbsent, kAbsent);
@@ -63,6 +100,7 @@ Table samples_table(const RecordingReader& recording) {
               record.has_grip_angle ? record.grip_angle : kAbsent);
     table.add("grip_force", "N", "squeeze at the pads; empty where not measured",
               record.has_grip_force ? record.grip_force : kAbsent);
+    table.add("rate", "Hz", "mean rate of this tool's readings over the whole recording, by the host's clock", rates.of(record.tool));
     table.add_integer("raw_angle", "count", "converter's reading of the grip angle", record.raw_angle);
     table.add_integer("raw_force", "count", "converter's reading of the grip force", record.raw_force);
     table.add_integer("buttons", "-", "bit set: 1 clutch, 2 cut, 4 next; 256 angle saturated, 512 force saturated, 1024 angle wire broken, 2048 force wire broken, 4096 calibration of another handle", record.buttons);
@@ -74,7 +112,7 @@ Table events_table(const RecordingReader& recording) {
   TableBuilder table("events", 0.0, "what happened, in the order it was noticed");
   RecordCursor<EventRecord> cursor = recording.events();
   EventRecord record;
-  while (cursor.next(record)) {
+  while (cursor.next_readable(record)) {
     table.new_row();
     table.add_integer("step", "count", "step number", static_cast<std::int64_t>(record.step));
     table.add("time", "s", "scene time", record.time);
@@ -82,6 +120,7 @@ Table events_table(const RecordingReader& recording) {
     table.add_integer("tool", "-", "index of the tool, -1 none", record.tool);
     table.add("value", "see unit", "what the event measured", record.value);
     table.add_text("unit", "-", "unit of value", std::string(record.unit.view()));
+    table.add_text("text", "-", "the same in words for people, such as a knot's class or a step's name; empty where there are none", std::string(record.text.view()));
   }
   return table.take();
 }
@@ -90,7 +129,7 @@ Table array_hashes_table(const RecordingReader& recording) {
   TableBuilder table("array_hashes", 0.0, "hash of each array of the state, taken every so many steps");
   RecordCursor<ArrayHashRecord> cursor = recording.array_hashes();
   ArrayHashRecord record;
-  while (cursor.next(record)) {
+  while (cursor.next_readable(record)) {
     table.new_row();
     table.add_integer("step", "count", "step number", static_cast<std::int64_t>(record.step));
     table.add_text("array", "-", "name of the array", std::string(record.name.view()));

@@ -10,6 +10,7 @@
 #include "session/database.h"
 #include "session/recorder.h"
 #include "session/records.h"
+#include "session/store.h"
 
 namespace filum {
 namespace {
@@ -24,6 +25,9 @@ struct Ratings::Impl {
 
   void open() {
     const bool there = std::filesystem::exists(file);
+    const database::Header header = database::read_header(file);
+    if (header.application_id == kRatingsId && header.format > kRatingsFormat)
+      throw StoreError(StoreTrouble::kNewer, file, "format", std::to_string(header.format) + ", made by a newer Filum", "a format up to " + std::to_string(kRatingsFormat));
     if (there) database::require_format(file, "the ratings of a Filum store", kRatingsId, kRatingsFormat);
     sql = std::make_unique<soci::session>(soci::sqlite3, database::connection_string(file, false));
     if (there && database::pragma(*sql, "quick_check") != "ok") throw InputError(file, "ratings", "damage", "an undamaged file; restore it from a copy");

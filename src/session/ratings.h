@@ -26,7 +26,8 @@ struct Rating {
 
 class Ratings {
  public:
-  /// Opens or creates ratings.sqlite in the folder. Throws InputError when it is damaged, foreign or newer: it is never replaced.
+  /// Opens or creates ratings.sqlite in the folder. Throws InputError when it is damaged or foreign, StoreError when it is
+  /// newer: it is never replaced.
   explicit Ratings(const std::string& folder);
   ~Ratings();
 

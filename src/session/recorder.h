@@ -15,7 +15,7 @@
 
 namespace filum {
 
-inline constexpr int kRecordingFormat = 1;
+inline constexpr int kRecordingFormat = 2;  // 1: events without text; still read
 
 struct RecorderOptions {
   std::string file;                        // created; an existing file is refused

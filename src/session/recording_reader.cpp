@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -48,6 +49,7 @@ class RecordingFile {
  public:
   explicit RecordingFile(const std::string& name) : file(name) {
     database::require_format(file, kWanted, database::kRecordingId, kRecordingFormat);
+    meta.format = database::read_header(file).format;
     try {
       open();
       read_texts();
@@ -62,28 +64,58 @@ class RecordingFile {
     throw InputError(file, "recording", what, kSound);
   }
 
-  /// The block after `id` of a table: false at the end. Blocks are numbered from 1 without a gap.
+  /// The block after `id` of a table: false at the end. Blocks are numbered from 1 without a gap. After an
+  /// InputError `id` is such that the next call goes on behind the damage.
   bool next_block(const char* table, long long& id, std::size_t& count, std::vector<char>& bytes) {
     long long found = 0;
     long long stored_count = 0;
     long long hash = 0;
+    if (id == kNoMore) return false;
+    const long long wanted = id + 1;
     try {
       soci::blob blob(*sql);
-      *sql << "SELECT id, count, data, hash FROM " << table << " WHERE id > " << id << " ORDER BY id LIMIT 1",
+      *sql << "SELECT id, count, data, hash FROM " << table << " WHERE id >= " << wanted << " ORDER BY id LIMIT 1",
           soci::into(found), soci::into(stored_count), soci::into(blob), soci::into(hash);
       if (!sql->got_data()) return false;
       bytes = database::bytes_of(blob);
     } catch (const std::exception& error) {
-      damaged(std::string(table) + ": " + database::reason(error));
+      id = kNoMore;
+      damaged(where(table, wanted) + " and those behind it: " + database::reason(error));
     }
-    const std::string where = std::string(table) + " block " + std::to_string(id + 1);
-    if (found != id + 1) damaged(where + " missing");
-    const std::uint64_t expected = hash_bytes(bytes.data(), bytes.size(), static_cast<std::uint64_t>(found));
-    if (static_cast<std::uint64_t>(hash) != expected) damaged(where + " with a wrong checksum");
-    if (stored_count < 1 || stored_count > 1000000) damaged(where + " with a wrong count");
+    if (found != wanted) {
+      id = found - 1;
+      damaged(where(table, wanted) + " missing");
+    }
     id = found;
+    const std::uint64_t expected = hash_bytes(bytes.data(), bytes.size(), static_cast<std::uint64_t>(found));
+    if (static_cast<std::uint64_t>(hash) != expected) damaged(where(table, found) + " with a wrong checksum");
+    if (stored_count < 1 || stored_count > 1000000) damaged(where(table, found) + " with a wrong count");
     count = static_cast<std::size_t>(stored_count);
     return true;
+  }
+
+  static std::string where(const char* table, long long id) { return std::string(table) + " block " + std::to_string(id); }
+
+  long long last_block(const char* table) {
+    long long id = 0;
+    try {
+      *sql << "SELECT coalesce(max(id), 0) FROM " << table, soci::into(id);
+    } catch (const std::exception& error) {
+      damaged(std::string(table) + ": " + database::reason(error));
+    }
+    return id;
+  }
+
+  /// What the database itself finds: pages, and texts whose name stands otherwise in the index.
+  std::string structure_damage() {
+    std::string said;
+    try {
+      said = database::pragma(*sql, "integrity_check(1)");
+    } catch (const std::exception& error) {
+      said = database::reason(error);
+    }
+    std::replace(said.begin(), said.end(), '\n', ' ');
+    return said == "ok" ? std::string() : "structure of the file: " + said;
   }
 
   std::string file;
@@ -91,8 +123,11 @@ class RecordingFile {
   bool finished = false;
   std::vector<SourceFile> sources;
   std::optional<ScoreRecord> score;
+  std::vector<std::string> damaged_texts;
 
  private:
+  static constexpr long long kNoMore = std::numeric_limits<long long>::max();  // a block's number: nothing more can be read
+
   void open() {
     try {
       connect(file);
@@ -120,31 +155,44 @@ class RecordingFile {
   }
 
   void read_texts() {
-    std::string kind;
-    std::string name;
-    std::string value;
-    long long hash = 0;
-    soci::statement select = (sql->prepare << "SELECT kind, name, value, hash FROM texts ORDER BY kind, name",
-                              soci::into(kind), soci::into(name), soci::into(value), soci::into(hash));
-    select.execute();
     bool has_meta = false;
-    while (select.fetch()) {
-      if (static_cast<std::uint64_t>(hash) != hash_text(value))
-        damaged(kind + " " + name + " with a wrong checksum");
-      if (kind == "source") sources.push_back({name, value});
-      if (kind == "score") read_score(value);
-      if (kind == "meta" && name == "finished") finished = true;
-      if (kind == "meta" && name == "meta") {
-        read_meta(value);
-        has_meta = true;
+    try {
+      std::string kind, name, value;
+      long long hash = 0;
+      // by row, not by the index of names, which may be damaged; the description of the session is the first
+      soci::statement select = (sql->prepare << "SELECT kind, name, value, hash FROM texts ORDER BY rowid",
+                                soci::into(kind), soci::into(name), soci::into(value), soci::into(hash));
+      select.execute();
+      while (select.fetch()) {
+        const bool sound = static_cast<std::uint64_t>(hash) == hash_text(value) && read_text(kind, name, value);
+        if (!sound) damaged_texts.push_back(kind + " " + name + " with a wrong checksum");
+        has_meta = has_meta || (sound && kind == "meta" && name == "meta");
       }
+    } catch (const std::exception& error) {
+      damaged_texts.push_back("texts: " + database::reason(error));
     }
-    if (!has_meta) damaged("no description of itself");
+    std::sort(sources.begin(), sources.end(), [](const SourceFile& a, const SourceFile& b) { return a.path < b.path; });
+    if (!has_meta) damaged("no description of itself" + (damaged_texts.empty() ? "" : " (" + damaged_texts.front() + ")"));
+  }
+
+  /// False for a kind that there is not.
+  bool read_text(const std::string& kind, const std::string& name, const std::string& value) {
+    if (kind == "source") {
+      sources.push_back({name, value});
+    } else if (kind == "score") {
+      read_score(value);
+    } else if (kind == "meta" && name == "meta") {
+      read_meta(value);
+    } else if (kind == "meta" && name == "finished") {
+      finished = true;
+    } else {
+      return kind == "meta" && name == "log";
+    }
+    return true;
   }
 
   void read_meta(const std::string& text) {
     const nlohmann::json json = nlohmann::json::parse(text);
-    meta.format = kRecordingFormat;
     json.at("program").get_to(meta.program);
     json.at("task").get_to(meta.task);
     json.at("participant").get_to(meta.participant);
@@ -183,13 +231,30 @@ const char* table_of(const ArrayHashRecord*) {
   return "array_hashes";
 }
 
-bool unpack_block(std::span<const char> bytes, std::size_t count, int n_tools,
+bool unpack_block(std::span<const char> bytes, std::size_t count, const RecordingMeta& meta,
                   std::vector<StepRecord>& records) {
-  return unpack(bytes, count, n_tools, records);
+  return unpack(bytes, count, meta.n_tools, records);
+}
+bool unpack_block(std::span<const char> bytes, std::size_t count, const RecordingMeta& meta,
+                  std::vector<EventRecord>& records) {
+  return meta.format == 1 ? unpack_without_text(bytes, count, records) : unpack(bytes, count, records);
 }
 template <class Record>
-bool unpack_block(std::span<const char> bytes, std::size_t count, int, std::vector<Record>& records) {
+bool unpack_block(std::span<const char> bytes, std::size_t count, const RecordingMeta&, std::vector<Record>& records) {
   return unpack(bytes, count, records);
+}
+
+template <class Record>
+void add_damage(RecordCursor<Record> cursor, std::vector<std::string>& damage) {
+  Record record;
+  for (;;) {
+    try {
+      while (cursor.next(record)) {}
+      return;
+    } catch (const InputError& error) {
+      damage.push_back(error.value);
+    }
+  }
 }
 
 }  // namespace
@@ -198,16 +263,30 @@ bool unpack_block(std::span<const char> bytes, std::size_t count, int, std::vect
 template <class Record>
 bool RecordCursor<Record>::next(Record& record) {
   if (at_ == block_.size()) {
+    block_.clear();
+    at_ = 0;
     const char* table = detail::table_of(static_cast<const Record*>(nullptr));
     std::size_t count = 0;
     std::vector<char> bytes;
     if (!file_->next_block(table, block_id_, count, bytes)) return false;
-    if (!detail::unpack_block(bytes, count, file_->meta.n_tools, block_))
-      file_->damaged(std::string(table) + " block " + std::to_string(block_id_) + " of another length");
-    at_ = 0;
+    if (!detail::unpack_block(bytes, count, file_->meta, block_)) {
+      block_.clear();
+      file_->damaged(file_->where(table, block_id_) + " of another length");
+    }
   }
   record = block_[at_++];
   return true;
+}
+
+template <class Record>
+bool RecordCursor<Record>::next_readable(Record& record) {
+  for (;;) {
+    try {
+      return next(record);
+    } catch (const InputError&) {
+      // the next call goes on behind it
+    }
+  }
 }
 
 template class RecordCursor<StepRecord>;
@@ -230,9 +309,43 @@ bool RecordingReader::finished() const {
 const std::vector<SourceFile>& RecordingReader::sources() const {
   return file_->sources;
 }
+const std::vector<std::string>& RecordingReader::damaged_texts() const {
+  return file_->damaged_texts;
+}
 const std::optional<ScoreRecord>& RecordingReader::score() const {
   return file_->score;
 }
+
+std::uint64_t RecordingReader::last_step() const {
+  std::vector<StepRecord> block;
+  std::vector<char> bytes;
+  std::size_t count = 0;
+  try {
+    for (long long last = file_->last_block("steps"); last > 0; --last) {
+      try {
+        long long id = last - 1;
+        if (file_->next_block("steps", id, count, bytes) && unpack(bytes, count, meta().n_tools, block)) return block.back().step;
+      } catch (const InputError&) {
+        // the block before it, then
+      }
+    }
+  } catch (const InputError&) {
+    // no step can be read
+  }
+  return 0;
+}
+
+std::vector<std::string> RecordingReader::find_damage() const {
+  std::vector<std::string> damage = file_->damaged_texts;
+  detail::add_damage(steps(), damage);
+  detail::add_damage(samples(), damage);
+  detail::add_damage(events(), damage);
+  detail::add_damage(array_hashes(), damage);
+  const std::string structure = file_->structure_damage();
+  if (!structure.empty()) damage.push_back(structure);
+  return damage;
+}
+
 RecordCursor<StepRecord> RecordingReader::steps() const {
   return RecordCursor<StepRecord>(file_);
 }

@@ -140,9 +140,10 @@ void put_one(Writer& out, const EventRecord& record) {
   out.put(static_cast<std::int8_t>(record.tool));
   out.put(record.value);
   out.put(record.unit);
+  out.put(record.text);
 }
 
-void get_one(Reader& in, EventRecord& record) {
+void get_one(Reader& in, EventRecord& record, bool with_text) {
   in.get(record.step);
   in.get(record.time);
   in.get(record.name);
@@ -151,6 +152,7 @@ void get_one(Reader& in, EventRecord& record) {
   record.tool = tool;
   in.get(record.value);
   in.get(record.unit);
+  if (with_text) in.get(record.text);
 }
 
 void put_one(Writer& out, const ArrayHashRecord& record) {
@@ -205,7 +207,10 @@ bool unpack(std::span<const char> bytes, std::size_t count, std::vector<SampleRe
   return unpack_all(bytes, count, records);
 }
 bool unpack(std::span<const char> bytes, std::size_t count, std::vector<EventRecord>& records) {
-  return unpack_all(bytes, count, records);
+  return unpack_all(bytes, count, records, true);
+}
+bool unpack_without_text(std::span<const char> bytes, std::size_t count, std::vector<EventRecord>& records) {
+  return unpack_all(bytes, count, records, false);
 }
 bool unpack(std::span<const char> bytes, std::size_t count, std::vector<ArrayHashRecord>& records) {
   return unpack_all(bytes, count, records);

@@ -14,13 +14,16 @@
 
 namespace filum {
 
-/// Text of at most N-1 bytes in place; longer text is cut.
+/// Text of at most N-1 bytes in place; longer text is cut, not within a character of UTF-8.
 template <std::size_t N>
 struct FixedText {
   std::array<char, N> bytes{};
   FixedText() = default;
   FixedText(std::string_view text) noexcept {  // NOLINT: meant to convert
-    for (std::size_t i = 0; i < text.size() && i + 1 < N; ++i) bytes[i] = text[i];
+    std::size_t n = text.size() < N ? text.size() : N - 1;
+    if (n < text.size())
+      while (n > 0 && (static_cast<unsigned char>(text[n]) & 0xC0U) == 0x80U) --n;
+    for (std::size_t i = 0; i < n; ++i) bytes[i] = text[i];
   }
   FixedText(const char* text) noexcept : FixedText(std::string_view(text)) {}  // NOLINT: meant to convert
   std::string_view view() const noexcept { return bytes.data(); }
@@ -64,6 +67,7 @@ struct EventRecord {
   int tool = -1;       // -1 none
   double value = 0.0;  // in `unit`
   FixedText<16> unit = "-";
+  FixedText<200> text = "";  // for people, may be empty; not there in recordings of format 1
 };
 
 /// Hash of one array of the state, taken every so many steps so that a replay can name the first array that
@@ -110,6 +114,8 @@ bool unpack(std::span<const char> bytes, std::size_t count, int n_tools, std::ve
 bool unpack(std::span<const char> bytes, std::size_t count, std::vector<SampleRecord>& records);
 bool unpack(std::span<const char> bytes, std::size_t count, std::vector<EventRecord>& records);
 bool unpack(std::span<const char> bytes, std::size_t count, std::vector<ArrayHashRecord>& records);
+/// Events of recordings of format 1.
+bool unpack_without_text(std::span<const char> bytes, std::size_t count, std::vector<EventRecord>& records);
 
 /// True for a participant code that may be stored: letters, digits, "_" and "-", 1 to 32 of them.
 bool is_participant_code(std::string_view code) noexcept;

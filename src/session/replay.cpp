@@ -31,11 +31,21 @@ class ArrayCheck {
   }
 
  private:
-  void advance() { more_ = cursor_.next(next_); }
+  void advance() { more_ = cursor_.next_readable(next_); }
   RecordCursor<ArrayHashRecord> cursor_;
   ArrayHashRecord next_;
   bool more_ = false;
 };
+
+/// False at the end or at damage, which the result then names.
+bool next_step(RecordCursor<StepRecord>& steps, StepRecord& record, ReplayResult& result) {
+  try {
+    return steps.next(record);
+  } catch (const InputError& error) {
+    result.damage = error.value;
+    return false;
+  }
+}
 
 constexpr int kStepsToNameArray =
     1000;  // array hashes are taken every so many steps; beyond this there are none
@@ -51,7 +61,7 @@ ReplayResult replay(const RecordingReader& recording, World& world,
   StepRecord record;
   bool array_named = false;
   std::uint64_t after_difference = 0;
-  while (steps.next(record)) {
+  while (next_step(steps, record, result)) {
     world.step(record.inputs);
     const Observation& seen = world.observation();
     if (seen.step != record.step)
@@ -70,7 +80,7 @@ ReplayResult replay(const RecordingReader& recording, World& world,
     }
     if (!to_the_end && (array_named || ++after_difference > kStepsToNameArray)) break;
   }
-  result.identical = !result.first_difference && result.steps > 0;
+  result.identical = !result.first_difference && result.damage.empty() && result.steps > 0;
   return result;
 }
 

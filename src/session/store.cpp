@@ -64,27 +64,31 @@ StoreEntry entry_of(const RecordingReader& recording, const std::string& id) {
     entry.passed = score->passed;
     entry.total = score->total;
     entry.seconds = score->seconds;
+  } else {
+    entry.seconds = static_cast<double>(recording.last_step()) * recording.meta().dt;
   }
   return entry;
 }
 
-template <class Record>
-std::uint64_t count_all(RecordCursor<Record> cursor, Record& last) {
-  std::uint64_t n = 0;
-  while (cursor.next(last)) ++n;
-  return n;
+/// Length [s] of what is stored of a recording, from its last block of steps; 0 where it cannot be read.
+double stored_seconds(const std::string& file) {
+  try {
+    const RecordingReader recording(file);
+    return static_cast<double>(recording.last_step()) * recording.meta().dt;
+  } catch (const InputError&) {
+    return 0.0;  // check() names the damage
+  }
 }
 
-/// Reads every block; throws InputError at the first damaged one. Returns the number of steps.
-std::uint64_t read_everything(const RecordingReader& recording) {
-  StepRecord step;
-  SampleRecord sample;
-  EventRecord event;
-  ArrayHashRecord array_hash;
-  count_all(recording.samples(), sample);
-  count_all(recording.events(), event);
-  count_all(recording.array_hashes(), array_hash);
-  return count_all(recording.steps(), step);
+StoreProblem damaged(const std::string& id, const std::string& what) {
+  return {id, what, "keep the file: what stands beside the damage can be read"};
+}
+
+/// All damage of a recording in one sentence; empty: sound.
+std::string damage_of(const RecordingReader& recording) {
+  std::string all;
+  for (const std::string& one : recording.find_damage()) all += (all.empty() ? "" : "; ") + one;
+  return all;
 }
 
 std::vector<std::string> ids_in(const std::string& folder) {
@@ -166,14 +170,34 @@ struct Store::Impl {
     return entries;
   }
 
+  /// Sessions that a crash cut short, or that still run: their lengths as stored by now. finish() corrects the latter.
+  void measure_unfinished() {
+    for (const StoreEntry& entry : select("finished = 0 AND seconds = 0 AND :a = '' AND :b = ''", "", "")) {
+      const double seconds = stored_seconds((fs::path(folder) / (entry.id + kRecordingSuffix)).string());
+      if (seconds > 0.0) *sql << "UPDATE filum_sessions SET seconds = :s WHERE id = :id AND finished = 0", soci::use(seconds), soci::use(entry.id);
+    }
+  }
+
+  [[noreturn]] void throw_trouble(const std::exception& error) const {
+    const std::string why = database::reason(error);
+    switch (database::failure_of(error)) {
+      case database::Failure::kLocked:
+        throw StoreError(StoreTrouble::kLocked, folder, "store", why, "a store that no other program keeps locked");
+      case database::Failure::kNoRoom:
+        throw StoreError(StoreTrouble::kNoRoom, folder, "store", why, "a disk with room that can be written");
+      case database::Failure::kDamage:
+      case database::Failure::kOther: break;
+    }
+    throw StoreError(StoreTrouble::kDatabase, folder, "store", why, "a store that can be read and written");
+  }
+
   /// Runs a database action; its failures name the store.
   template <class Action>
   auto guarded(Action&& action) {
     try {
       return action();
     } catch (const soci::soci_error& error) {
-      throw StoreError(StoreTrouble::kDatabase, folder, "store", database::reason(error),
-                       "a store that can be read and written");
+      throw_trouble(error);
     }
   }
 };
@@ -203,10 +227,14 @@ Store::Store(const std::string& folder, const std::string& index_connection)
     throw;
   } catch (const InputError&) {
     damaged = true;
-  } catch (const soci::soci_error&) {
+  } catch (const soci::soci_error& error) {
+    if (database::failure_of(error) != database::Failure::kDamage) impl_->throw_trouble(error);
     damaged = true;
   }
-  if (!damaged) return;
+  if (!damaged) {
+    impl_->guarded([&] { impl_->measure_unfinished(); });
+    return;
+  }
   impl_->sql.reset();
   const std::string aside = (fs::path(folder) / ("index-damaged-" + compact(utc_now()) + ".sqlite")).string();
   fs::rename(index_path(folder), aside, error);
@@ -248,7 +276,7 @@ void Store::finish(const std::string& id, const std::optional<ScoreRecord>& scor
   const int scored = score ? 1 : 0;
   const int passed = score && score->passed ? 1 : 0;
   const double total = score ? score->total : 0.0;
-  const double seconds = score ? score->seconds : 0.0;
+  const double seconds = score ? score->seconds : stored_seconds(file_of(id));
   impl_->guarded([&] {
     *impl_->sql
         << "UPDATE filum_sessions SET finished = 1, scored = :s, passed = :p, total = :t, seconds = :sec "
@@ -279,13 +307,10 @@ std::vector<StoreProblem> Store::rebuild() {
   for (const std::string& id : ids_in(impl_->folder)) {
     try {
       const RecordingReader recording(file_of(id));
-      StoreEntry entry = entry_of(recording, id);
-      const std::uint64_t steps = read_everything(recording);
-      if (!entry.scored) entry.seconds = static_cast<double>(steps) * recording.meta().dt;
-      entries.push_back(entry);
+      entries.push_back(entry_of(recording, id));
+      if (const std::string damage = damage_of(recording); !damage.empty()) problems.push_back(damaged(id, damage));
     } catch (const InputError& error) {
-      problems.push_back(
-          {id, error.what(), "keep the file: what stands before the damage may be read by hand"});
+      problems.push_back(damaged(id, error.what()));
     }
   }
   impl_->guarded([&] {
@@ -304,10 +329,9 @@ std::vector<StoreProblem> Store::check(bool deep) const {
     if (!find(id)) problems.push_back({id, "is not in the index", "rebuild the index"});
     try {
       const RecordingReader recording(file_of(id));
-      if (deep) read_everything(recording);
+      if (const std::string damage = deep ? damage_of(recording) : ""; !damage.empty()) problems.push_back(damaged(id, damage));
     } catch (const InputError& error) {
-      problems.push_back(
-          {id, error.what(), "keep the file: what stands before the damage may be read by hand"});
+      problems.push_back(damaged(id, error.what()));
     }
   }
   for (const StoreEntry& entry : list())

@@ -21,8 +21,8 @@ struct StoreEntry {
   std::string task;
   std::string participant;  // code or empty
   std::string started_utc;
-  double seconds = 0.0;   // [s], of the task
-  bool finished = false;  // closed properly
+  double seconds = 0.0;   // [s], of the task; without a score, of what was stored
+  bool finished = false;  // closed properly; else cut short, or still running
   bool scored = false;
   bool passed = false;
   double total = 0.0;  // [points]
@@ -35,7 +35,7 @@ struct StoreProblem {
 };
 
 /// Why a store cannot be opened: each asks for something else of the user.
-enum class StoreTrouble { kNoFolder, kNotWritable, kNewer, kDatabase };
+enum class StoreTrouble { kNoFolder, kNotWritable, kNewer, kLocked, kNoRoom, kDatabase };
 
 struct StoreError : InputError {
   StoreError(StoreTrouble trouble, const std::string& file, const std::string& field, const std::string& value,
@@ -47,7 +47,8 @@ struct StoreError : InputError {
 class Store {
  public:
   /// Opens or creates. A damaged index is set aside, built anew from the recordings, and reported by check().
-  /// Throws StoreError when the folder cannot be made or written or the index was made by a newer program.
+  /// Sessions that were cut short get the length of what was stored of them. Throws StoreError when the folder cannot
+  /// be made or written, the index was made by a newer program, or is sound but locked or without room.
   /// Not thread-safe: one thread owns a Store.
   explicit Store(const std::string& folder, const std::string& index_connection = "");
   ~Store();
@@ -66,7 +67,7 @@ class Store {
   std::string file_of(const std::string& id) const;
 
   /// Reads every recording in the folder and writes the index anew. Damaged files are left alone and
-  /// reported.
+  /// reported; those that can be read in part are entered.
   std::vector<StoreProblem> rebuild();
   /// Compares folder and index without changing either; `deep` also reads every block of every recording.
   std::vector<StoreProblem> check(bool deep) const;

@@ -67,8 +67,9 @@ bool asks_for_form(const BrainModel& model, std::size_t i, const ToolInput& in, 
 
 void move_blade(const BrainModel& model, std::size_t i, const ToolInput& in, double time, double dt, BladeState& blade, std::int32_t& valid, Observation& o) noexcept {
   const bool sound = in.valid && in.X_WD.finite() && std::abs(in.X_WD.q.norm() - 1.0) < 1e-3;
-  if (sound != (valid != 0)) event(o, sound ? "input-back" : "input-lost", i);
-  valid = sound;
+  const InputState now = input_state(sound, valid);
+  if (const char* name = input_event(valid, now)) event(o, name, i);
+  valid = now;
   const bool placing = !model.placed[i].empty() && time < model.placed[i].back().t;
   if (sound) {
     blade.X_WD = in.X_WD;

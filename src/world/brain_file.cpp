@@ -13,35 +13,45 @@
 namespace filum {
 namespace {
 
+// A head and what is laid on it, widely taken: a slip of unit or exponent is refused, no tissue or blade is.
+constexpr double kHead = 0.5;                  // [m]
+constexpr Range kHeadLength{1e-5, kHead};      // [m]
+constexpr Range kUpToHead{0.0, kHead};         // [m]
+constexpr Range kHeight{-kHead, kHead};        // [m]
+constexpr Range kYoung{1.0, 1e8};              // [Pa]
+constexpr Range kDensity{100.0, 1e4};          // [kg/m3]
+constexpr Range kVeinStiffness{1e-3, 1e5};     // [N/m]
+constexpr Range kVeinStrength{1e-4, 100.0};    // [N]
+
 CortexShape read_shape(const YamlNode& node) {
   CortexShape s;
-  s.size = node.vec3("size", "mm");
+  s.size = read_point(node, "size");
   const YamlNode cells = node.map("cells");
   s.cells = {cells.integer("along", 2, 100), cells.integer("across", 2, 100), cells.integer("deep", 2, 100)};
-  s.gyrus = node.quantity("gyrus", "mm", Range::positive());
-  s.sulcus = node.quantity("sulcus", "mm", Range::not_negative());
-  s.grey = node.quantity("grey", "mm", Range::not_negative());
-  s.fissure_depth = node.quantity_or("fissure_depth", "mm", 0.0, Range::not_negative());
-  s.fissure_gap = node.quantity_or("fissure_gap", "mm", 1e-3, Range::positive());
+  s.gyrus = node.quantity("gyrus", "mm", kHeadLength);
+  s.sulcus = node.quantity("sulcus", "mm", kUpToHead);
+  s.grey = node.quantity("grey", "mm", kUpToHead);
+  s.fissure_depth = node.quantity_or("fissure_depth", "mm", 0.0, kUpToHead);
+  s.fissure_gap = node.quantity_or("fissure_gap", "mm", 1e-3, kHeadLength);
   s.open_side = node.flag_or("open_side", false);
-  s.lean = node.quantity_or("lean", "mm", 0.0, Range::not_negative());
-  s.fissure_wave = node.quantity_or("fissure_wave", "mm", 0.0, Range::not_negative());
+  s.lean = node.quantity_or("lean", "mm", 0.0, kUpToHead);
+  s.fissure_wave = node.quantity_or("fissure_wave", "mm", 0.0, kUpToHead);
   return s;
 }
 
 FemMaterial read_tissue(const YamlNode& node) {
   FemMaterial m;
-  m.young = measured(node, "young", "kPa", Range::positive());
+  m.young = measured(node, "young", "kPa", kYoung);
   m.poisson = measured(node, "poisson", "-", {-0.99, 0.4999, false});
-  m.density = measured(node, "density", "kg/m3", Range::positive());
+  m.density = measured(node, "density", "kg/m3", kDensity);
   return m;
 }
 
 void read_veins(const YamlNode& file, BrainModel& m) {
   for (const YamlNode& item : file.items_or_none("veins")) {
     BridgingVein v;
-    const Vec3 at = item.vec3("cortex", "mm");
-    v.dura_W = item.vec3("dura", "mm");
+    const Vec3 at = read_point(item, "cortex");
+    v.dura_W = read_point(item, "dura");
     double nearest = 1.0;
     v.node = -1;
     for (const int i : m.cortex.surface_nodes) {
@@ -53,8 +63,8 @@ void read_veins(const YamlNode& file, BrainModel& m) {
     }
     if (v.node < 0) item.refuse("cortex", "a place on the free surface, within 1 m of it");
     v.slack = (v.dura_W - Vec3(m.cortex.mesh.nodes.col(v.node))).norm() * item.number("slack", Range::between(1.0, 3.0));
-    v.stiffness = item.quantity("stiffness", "N/m", Range::positive());
-    v.strength = item.quantity("strength", "N", Range::positive());
+    v.stiffness = item.quantity("stiffness", "N/m", kVeinStiffness);
+    v.strength = item.quantity("strength", "N", kVeinStrength);
     item.text("source");
     const bool twice = std::any_of(m.veins.begin(), m.veins.end(), [&](const BridgingVein& o) { return o.node == v.node; });
     if (twice) item.refuse("cortex", "a place of its own");
@@ -69,8 +79,8 @@ void read_brain(const std::string& path, BrainModel& m) {
     m.mesh_name = file.text("mesh");
     if (m.mesh_name.find('/') != std::string::npos || m.mesh_name.find("..") != std::string::npos) file.refuse("mesh", "a file beside this one");
     m.mesh_file = (std::filesystem::path(path).parent_path() / m.mesh_name).string();
-    m.cortex = cortex_from_mesh(load_mesh(m.mesh_file), file.quantity("held_below", "mm"),
-                                file.quantity_or("held_beyond", "mm", std::numeric_limits<double>::infinity(), Range::positive()));
+    m.cortex = cortex_from_mesh(load_mesh(m.mesh_file), file.quantity("held_below", "mm", kHeight),
+                                file.quantity_or("held_beyond", "mm", std::numeric_limits<double>::infinity(), kHeadLength));
   } else {
     m.cortex = make_cortex(read_shape(file.map("shape")), path);
   }
@@ -81,18 +91,18 @@ void read_brain(const std::string& path, BrainModel& m) {
   for (FemMaterial& tissue : m.regions) tissue.young *= dial;
   if (file.has("falx")) {
     const YamlNode falx = file.map("falx");
-    m.falx.y = falx.quantity("y", "mm");
-    m.falx.bottom = falx.quantity("bottom", "mm");
-    m.falx.top = falx.quantity("top", "mm");
+    m.falx.y = falx.quantity("y", "mm", kHeight);
+    m.falx.bottom = falx.quantity("bottom", "mm", kHeight);
+    m.falx.top = falx.quantity("top", "mm", kHeight);
     if (!m.falx.present()) falx.refuse("top", "a height above the bottom");
     falx.text("source");
   }
-  m.fem.mass_damping = measured(file, "mass_damping", "1/s", Range::not_negative());
-  m.fem.stiffness_damping = measured(file, "stiffness_damping", "ms", Range::not_negative());
-  const RelaxationTerm term{measured(file, "relaxing_share", "-", Range::between(0.0, 0.99)), measured(file, "relaxation_time", "s", Range::positive())};
+  m.fem.mass_damping = measured(file, "mass_damping", "1/s", Range::between(0.0, 1e5));
+  m.fem.stiffness_damping = measured(file, "stiffness_damping", "ms", Range::between(0.0, 10.0));
+  const RelaxationTerm term{measured(file, "relaxing_share", "-", Range::between(0.0, 0.99)), measured(file, "relaxation_time", "s", {1e-4, 1e5})};
   if (term.share > 0.0) m.fem.relaxation = {term};
   m.contact.friction = measured(file, "friction", "-", Range::between(0.0, 2.0));
-  m.contact.reach = file.quantity("reach", "mm", Range::positive());
+  m.contact.reach = file.quantity("reach", "mm", {1e-5, 0.1});
   read_veins(file, m);
   file.finish();
 }
@@ -150,13 +160,13 @@ BladeShape load_blade(const std::string& path) {
   const YamlNode file = open_model_file(path, "filum-spatula/1");
   BladeShape b;
   b.name = file.text("title");
-  b.width = file.quantity("width", "mm", Range::positive());
-  b.tip_width = file.quantity("tip_width", "mm", Range::positive());
-  b.taper = file.quantity("taper", "mm", Range::not_negative());
-  b.length = file.quantity("length", "mm", Range::positive());
-  b.grip = file.quantity("grip", "mm", Range::positive());
+  b.width = file.quantity("width", "mm", kHeadLength);
+  b.tip_width = file.quantity("tip_width", "mm", kHeadLength);
+  b.taper = file.quantity("taper", "mm", kUpToHead);
+  b.length = file.quantity("length", "mm", kHeadLength);
+  b.grip = file.quantity("grip", "mm", kHeadLength);
   for (const YamlNode& bend : file.items_or_none("bends"))
-    b.bends.push_back({bend.quantity("at", "mm"), bend.quantity("angle", "deg"), bend.quantity("over", "mm", Range::positive())});
+    b.bends.push_back({bend.quantity("at", "mm", kUpToHead), bend.quantity("angle", "deg", Range::between(-3.2, 3.2)), bend.quantity("over", "mm", kHeadLength)});
   file.text("source");
   file.finish();
   check_blade(b, path);
@@ -178,12 +188,12 @@ std::shared_ptr<const Model> load_brain_scene(const std::string& root, const std
   m->sources.push_back(own ? named : model_file);
   read_brain(own ? root + "/" + named : model_file, *brain);
   if (!scene.flag_or("relaxation", true)) brain->fem.relaxation.clear();
-  brain->section_x = scene.quantity_or("section", "mm", 0.0);
+  brain->section_x = scene.quantity_or("section", "mm", 0.0, kHeight);
   brain->time_compression = scene.number_or("time_compression", 1.0, Range::between(1.0, 60.0));
   if (scene.has("target")) {
     const YamlNode target = scene.map("target");
-    brain->target_W = target.vec3("p", "mm");
-    brain->target_radius = target.quantity("radius", "mm", Range::positive());
+    brain->target_W = read_point(target, "p");
+    brain->target_radius = target.quantity("radius", "mm", kHeadLength);
   }
   read_blades(root, scene, *m, *brain);
   d.dt = m->step.dt = brain->fem.dt = scene.quantity("step", "ms", {5e-4, 2e-2});

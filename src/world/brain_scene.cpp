@@ -328,7 +328,7 @@ void BrainScene::observe(const BrainState& s, const std::array<std::int32_t, 3>&
     tool.X_WT = blade.X_W;
     tool.X_WD = blade.X_WD;
     tool.f_T_W = blade.force + blade.stop_force;
-    tool.input_valid = valid[i] != 0;
+    tool.input_valid = valid[i] == kInputLive;
     tool.grasped_edge = blade.form;  // a spatula has no jaws: which of its forms it has
     BladeObservation& b = o.brain.blades[i];
     b.force_W = blade.force;

@@ -22,4 +22,16 @@ struct Inputs {
   std::array<ToolInput, 3> tools;
 };
 
+/// What was heard of a device by the last step. An input comes back only after it was lost.
+enum InputState : std::int32_t { kInputNeverHeard = 0, kInputLive = 1, kInputLost = -1 };
+
+/// The state after a step with or without a sound input.
+constexpr InputState input_state(bool sound, std::int32_t before) noexcept { return sound ? kInputLive : before == kInputNeverHeard ? kInputNeverHeard : kInputLost; }
+
+/// "input-lost", "input-back", or nullptr where neither happened.
+constexpr const char* input_event(std::int32_t before, InputState now) noexcept {
+  if (before == kInputLive && now == kInputLost) return "input-lost";
+  return before == kInputLost && now == kInputLive ? "input-back" : nullptr;
+}
+
 }  // namespace filum

@@ -21,10 +21,15 @@ Vec3 read_direction(const YamlNode& node, const std::string& key) {
   return v.normalized();
 }
 
+Vec3 read_point(const YamlNode& node, const std::string& key) {
+  const Vec3 p = node.vec3(key, "mm");
+  if (!(p.norm() <= 1.0)) node.refuse(key, "a point within 1000 mm of the origin");
+  return p;
+}
+
 Pose read_pose(const YamlNode& node) {
   Pose X;
-  X.p = node.vec3("p", "mm");
-  if (!(X.p.norm() <= 1.0)) node.refuse("p", "a point within 1000 mm of the origin");
+  X.p = read_point(node, "p");
   const Vec3 z = read_direction(node, "handle");
   const Vec3 side = read_direction(node, "opening");
   const Vec3 x = side - side.dot(z) * z;

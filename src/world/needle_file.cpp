@@ -6,6 +6,14 @@
 #include "world/needle_model.h"
 
 namespace filum {
+namespace {
+
+// Needles of microsurgery and of the ward, widely taken: a slip of unit or exponent is refused, no needle is.
+constexpr Range kNeedleLength{5e-4, 0.1};      // [m], along the wire
+constexpr Range kNeedleDensity{500.0, 25e3};   // [kg/m3], plastics to tungsten
+constexpr Range kGripStiffness{1.0, 1e7};      // [N/m]
+
+}  // namespace
 
 NeedleShape load_needle(const std::string& path) {
   const YamlNode file = open_model_file(path, "filum-needle/1");
@@ -13,13 +21,13 @@ NeedleShape load_needle(const std::string& path) {
   n.name = file.text("title");
   n.wire_radius = 0.5 * measured(file, "wire", "um", {20e-6, 500e-6});
   n.circle = measured(file, "circle", "-", Range::between(0.1, 0.7));
-  n.bend_radius = measured(file, "length", "mm", Range::positive()) / n.angle();
-  n.density = measured(file, "density", "kg/m3", Range::positive());
+  n.bend_radius = measured(file, "length", "mm", kNeedleLength) / n.angle();
+  n.density = measured(file, "density", "kg/m3", kNeedleDensity);
   n.taper = measured(file, "taper", "mm", {1e-5, n.length()});
-  n.flat_width = measured(file, "flat_width", "um", Range::not_negative());
+  n.flat_width = measured(file, "flat_width", "um", Range::between(0.0, 2.0 * n.wire_radius));
   n.pad_friction = measured(file, "pad_friction", "-", Range::between(0.0, 2.0));
   n.sheet_friction = measured(file, "sheet_friction", "-", Range::between(0.0, 2.0));
-  n.grip_stiffness = measured(file, "grip_stiffness", "N/m", Range::positive());
+  n.grip_stiffness = measured(file, "grip_stiffness", "N/m", kGripStiffness);
   file.finish();
   return n;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "world/inputs.h"
+
 namespace filum {
 namespace {
 
@@ -46,7 +48,7 @@ void observe_tools(const State& s, Observation& o) noexcept {
     tool.f_T_W = s.force[i];
     tool.grip_angle = in.angle;
     tool.grip_force = in.grip_force;
-    tool.input_valid = s.valid[i] != 0;
+    tool.input_valid = s.valid[i] == kInputLive;
     tool.grasped_edge = -1;
     for (const GraspPoint& g : s.memory.grasps)
       if (g.tool == static_cast<int>(i)) tool.grasped_edge = locate_arc(s.thread, g.arc).first;

@@ -29,13 +29,6 @@ constexpr Range kInstrumentInertia{1e-10, 1.0}; // [kg m2]
 constexpr Range kGripForce{1e-4, 1e3};          // [N]
 constexpr Range kPelletMass{1e-12, 1.0};        // [kg]
 
-/// A point [m] of the bench.
-Vec3 read_point(const YamlNode& node, const std::string& key) {
-  const Vec3 p = node.vec3(key, "mm");
-  if (!(p.norm() <= kBenchLength.high)) node.refuse(key, "a point within 1000 mm of the origin");
-  return p;
-}
-
 PostShape read_bar(const YamlNode& node) {
   PostShape bar;
   bar.p_W = read_point(node, "centre");

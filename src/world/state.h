@@ -21,7 +21,7 @@ struct State {
   std::vector<InstrumentState> instruments;
   std::vector<Vec3> force, torque;          // [N], [N m], of the scene on each tool in the last step, about its tip
   std::array<std::int32_t, 3> armed{};      // jaws have been open since they last closed: they may take the thread
-  std::array<std::int32_t, 3> valid{};      // the device was live in the last step
+  std::array<std::int32_t, 3> valid{};      // what came from each tool's device, an InputState
   std::vector<PelletState> pellets;
   NeedleState needle;                       // of scenes with one
   std::int32_t has_needle = 0;

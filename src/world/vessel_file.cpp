@@ -11,11 +11,23 @@
 namespace filum {
 namespace {
 
+// What is sewn under a microscope, widely taken: a slip of unit or exponent is refused, no tissue is.
+constexpr Range kLayerThickness{1e-6, 5e-3};   // [m]
+constexpr Range kYoung{10.0, 1e10};            // [Pa], jelly to hard plastics
+constexpr Range kTissueLength{1e-5, 0.1};      // [m]
+constexpr double kMostGap = 0.05;              // [m]
+constexpr double kMostDamping = 1e5;           // [1/s]
+constexpr Range kBloodPressure{100.0, 1e5};    // [Pa], 750 mmHg
+constexpr Range kFlow{1e-12, 1e-3};            // [m3/s], to a litre a second
+constexpr double kMostPuncture = 10.0;         // [N]
+constexpr double kMostTrackStiffness = 1e6;    // [N/m]
+constexpr Range kTrackStiffness{1e-3, kMostTrackStiffness};
+
 WallLayer read_layer(const YamlNode& node) {
   WallLayer l;
   l.name = node.text("name");
-  l.thickness = node.quantity("thickness", "um", Range::positive());
-  l.law = WallLaw::hooke(node.quantity("young", "kPa", Range::positive()), node.number("poisson", Range::between(0.0, 0.499)));
+  l.thickness = node.quantity("thickness", "um", kLayerThickness);
+  l.law = WallLaw::hooke(node.quantity("young", "kPa", kYoung), node.number("poisson", Range::between(0.0, 0.499)));
   node.text("source");
   return l;
 }
@@ -24,11 +36,11 @@ WallLayer read_layer(const YamlNode& node) {
 VesselMesh read_card(const YamlNode& node, double thickness) {
   CardShape shape;
   shape.thickness = thickness;
-  shape.width = node.quantity("width", "mm", Range::positive());
-  shape.depth = node.quantity("depth", "mm", Range::positive());
+  shape.width = node.quantity("width", "mm", kTissueLength);
+  shape.depth = node.quantity("depth", "mm", kTissueLength);
   shape.across = node.integer("across", 2, 60);
   shape.deep = node.integer("deep", 2, 40);
-  const Vec3 at = node.vec3("centre", "mm");
+  const Vec3 at = read_point(node, "centre");
   const VesselMesh flap = make_card(shape);
   VesselMesh mesh;
   Pose X;
@@ -37,7 +49,7 @@ VesselMesh read_card(const YamlNode& node, double thickness) {
     append(mesh, flap, X);
     return mesh;
   }
-  const double gap = node.quantity("gap", "mm", Range::not_negative());
+  const double gap = node.quantity("gap", "mm", Range::between(0.0, kMostGap));
   X.p = at - 0.5 * gap * Vec3::UnitY();
   append(mesh, flap, X);
   X.p = at + 0.5 * gap * Vec3::UnitY();
@@ -51,17 +63,17 @@ void read_flaps(const YamlNode& node, VesselModel& v) {
   for (const YamlNode& layer : node.items("layers")) v.layers.push_back(read_layer(layer));
   for (const WallLayer& l : v.layers) v.thickness += l.thickness;
   v.mesh = read_card(node, v.thickness);
-  v.wall.damping = node.quantity("damping", "1/s", Range::not_negative());
+  v.wall.damping = node.quantity("damping", "1/s", Range::between(0.0, kMostDamping));
 }
 
 /// What the clamps keep out; what is not said is an artery's.
 void read_blood(const YamlNode& node, VesselModel& v) {
   Circulation& c = v.circulation;
-  c.pressure = node.quantity("pressure", "mmHg", Range::positive());
+  c.pressure = node.quantity("pressure", "mmHg", kBloodPressure);
   c.back = node.quantity("back", "mmHg", Range::between(0.0, c.pressure));
   c.opening = node.quantity("opening", "mmHg", Range::between(0.0, c.pressure));
-  c.cut_flow = node.quantity_or("cut_flow", "m3/s", c.cut_flow, Range::positive());
-  c.through = node.quantity_or("through", "m3/s", c.through, Range::positive());
+  c.cut_flow = node.quantity_or("cut_flow", "m3/s", c.cut_flow, kFlow);
+  c.through = node.quantity_or("through", "m3/s", c.through, kFlow);
   if (c.downstream() <= 0.0) node.refuse("through", "less than the cut vessel gives");
   v.slack = node.quantity_or("slack", "mmHg", 0.0, {-1e4, 0.0});
 }
@@ -72,7 +84,7 @@ double outer_radius(const TubeShape& s) { return make_tube(s).nodes.topRows<2>()
 void read_side(const YamlNode& node, const TubeShape& stump, VesselModel& v) {
   SideHold hold;
   hold.lean = node.quantity("lean", "deg", Range::between(0.4, 0.5 * std::numbers::pi));
-  hold.reach = 0.5 * node.quantity("length", "mm", Range::positive());
+  hold.reach = 0.5 * node.quantity("length", "mm", kTissueLength);
   hold.radius = v.radius = outer_radius(stump);
   TubeShape vessel = stump;
   vessel.along = node.integer("along", 8, 200);
@@ -96,7 +108,7 @@ void read_stumps(const std::string& root, const YamlNode& node, Model& m, Vessel
   if (!preset.tube) node.refuse("preset", "a vessel that is a tube");
   m.sources.push_back(file);
   TubeShape& s = preset.shape;
-  s.length = node.quantity("stump", "mm", Range::positive());
+  s.length = node.quantity("stump", "mm", kTissueLength);
   s.around = node.integer("around", 8, 64);
   s.along = node.integer("along", 2, 200);
   s.edge_grading = node.number("grading", Range::between(0.2, 5.0));
@@ -104,12 +116,12 @@ void read_stumps(const std::string& root, const YamlNode& node, Model& m, Vessel
   v.thickness = s.thickness;
   v.wall.density = preset.wall.density;
   v.wall.damping = preset.wall.damping;
-  v.clamp.gap = node.quantity("gap", "mm", Range::not_negative());
+  v.clamp.gap = node.quantity("gap", "mm", Range::between(0.0, kMostGap));
   v.closed_gap = node.quantity_or("closed_gap", "mm", 0.0, {-1e-3, v.clamp.gap});
   v.clamp.turn = node.quantity("turn", "deg", Range::between(-std::numbers::pi, std::numbers::pi));
   Mat3 bar;
   bar << -Vec3::UnitX(), Vec3::UnitZ(), Vec3::UnitY();
-  v.clamp.X_WB = {node.vec3("centre", "mm"), Quat(bar)};
+  v.clamp.X_WB = {read_point(node, "centre"), Quat(bar)};
   if (node.has("blood")) read_blood(node.map("blood"), v);
   v.wall.tolerance = node.quantity_or("tolerance", "uN", v.wall.tolerance, {1e-8, 1e-4});
   v.lumen = true;
@@ -131,22 +143,22 @@ TrackMaterial load_track(const std::string& path) {
   TrackMaterial m;
   for (const YamlNode& node : file.items("layers")) {
     PunctureLayer l;
-    l.puncture = measured(node, "puncture", "mN", Range::positive());
-    l.cutting = measured(node, "cutting", "mN", Range::not_negative());
-    l.friction = measured(node, "friction", "N/m", Range::not_negative());
-    l.drag = measured(node, "drag", "N.s/m2", Range::not_negative());
+    l.puncture = measured(node, "puncture", "mN", {1e-7, kMostPuncture});
+    l.cutting = measured(node, "cutting", "mN", Range::between(0.0, kMostPuncture));
+    l.friction = measured(node, "friction", "N/m", Range::between(0.0, kMostTrackStiffness));
+    l.drag = measured(node, "drag", "N.s/m2", Range::between(0.0, 1e6));
     m.layers.push_back(l);
   }
   if (m.layers.empty()) file.refuse("layers", "at least one layer");
-  m.hold = measured(file, "hold", "N/m", Range::positive());
-  m.point_stiffness = measured(file, "point_stiffness", "N/m", Range::positive());
-  m.least_angle = measured(file, "least_angle", "deg", Range::not_negative());
-  m.thread_share = measured(file, "thread_share", "-", Range::not_negative());
-  m.bend_friction = measured(file, "bend_friction", "-", Range::not_negative());
-  m.tear = measured(file, "tear", "N/m", Range::positive());
+  m.hold = measured(file, "hold", "N/m", kTrackStiffness);
+  m.point_stiffness = measured(file, "point_stiffness", "N/m", kTrackStiffness);
+  m.least_angle = measured(file, "least_angle", "deg", Range::between(0.0, 0.5 * std::numbers::pi));
+  m.thread_share = measured(file, "thread_share", "-", Range::between(0.0, 10.0));
+  m.bend_friction = measured(file, "bend_friction", "-", Range::between(0.0, 2.0));
+  m.tear = measured(file, "tear", "N/m", kTrackStiffness);
   m.exit_share = measured(file, "exit_share", "-", Range::between(0.0, 1.0));
-  m.wear = measured(file, "wear", "1/N", Range::not_negative());
-  m.spacing = file.quantity("spacing", "um", Range::positive());
+  m.wear = measured(file, "wear", "1/N", Range::between(0.0, 1e6));
+  m.spacing = file.quantity("spacing", "um", Range::between(1e-6, 1e-2));
   file.finish();
   return m;
 }
@@ -155,6 +167,7 @@ void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
   auto v = std::make_shared<VesselModel>();
   v->kind = node.choice("kind", {"card", "vessel"});
   v->wall.dt = m.step.dt;
+  v->wall.strict_iterations = 5;
   v->wall.max_iterations = 16;  // a late step is made up for; a wall that is far from balance is not
   if (v->kind == "card")
     read_flaps(node, *v);

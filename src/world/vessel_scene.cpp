@@ -62,7 +62,7 @@ VesselState VesselScene::start(const Vec3& point) {
 void VesselScene::fall_flat(VesselState& s) {
   s.pressure.fill(model_.slack);
   WallOptions patient = model_.wall;
-  patient.max_iterations = 60;  // steps left unbalanced on the way go on swinging at rest
+  patient.strict_iterations = patient.max_iterations = 60;  // steps left unbalanced on the way go on swinging at rest
   VesselWall wall(model_.mesh, model_.layers, patient);
   for (int k = 1; k <= kSettling; ++k) {
     for (int part = 0; part < wall.n_parts(); ++part) wall.set_pressure(part, model_.slack * std::min(1.0, static_cast<double>(k) / kFalling));

@@ -158,8 +158,9 @@ void World::Impl::read_inputs(const Inputs& inputs) noexcept {
                        std::isfinite(in.grip_force);
     InstrumentCommand& c = commands[i];
     c.follow = sound;
-    if (sound != (state.valid[i] != 0)) event(sound ? "input-back" : "input-lost", static_cast<int>(i), 0.0, "-");
-    state.valid[i] = sound;
+    const InputState now = input_state(sound, state.valid[i]);
+    if (const char* name = input_event(state.valid[i], now)) event(name, static_cast<int>(i), 0.0, "-");
+    state.valid[i] = now;
     if (!sound) continue;
     c = {in.X_WD, in.grip_angle, in.grip_force, in.has_grip_force, true};
     c.X_WD.q.normalize();

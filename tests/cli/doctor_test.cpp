@@ -52,6 +52,27 @@ TEST_F(Doctor, EveryCheckIsThereAndWhatThisTestMadeIsFoundSound) {
   for (const char* name : {"cores", "timer", "speed", "devices", "store", "viewer", "files", "versions"}) EXPECT_TRUE(found.count(name)) << name;
   for (const char* name : {"store", "viewer", "files", "versions"}) EXPECT_TRUE(found[name]["ok"].get<bool>()) << found[name];
   EXPECT_EQ(found.count("handle"), 0u);
+  const std::string speed = found["speed"]["detail"];
+  EXPECT_EQ(speed.find("first throw of knot-square, "), 0u) << "a thread that is handled, not one that lies there: " << speed;
+  EXPECT_NE(speed.find("times real time"), std::string::npos) << speed;
+}
+
+TEST_F(Doctor, SessionsThatWereCutShortAreCounted) {
+  {
+    Store store(folder_.file("store"));
+    store.finish(store.begin("knot-square", "").id, std::nullopt);
+    store.begin("knot-square", "");
+  }
+  const std::string detail = checks()["store"]["detail"];
+  EXPECT_NE(detail.find("2 sessions (1 cut short or running)"), std::string::npos) << detail;
+}
+
+TEST_F(Doctor, ALockedStoreIsCalledLocked) {
+  { const Store store(folder_.file("store")); }
+  soci::session other(soci::sqlite3, database::connection_string(folder_.file("store/index.sqlite"), false));
+  other << "BEGIN EXCLUSIVE";
+  const Json found = checks()["store"];
+  EXPECT_NE(found["advice"].get<std::string>().find("End the other program"), std::string::npos) << found;
 }
 
 TEST_F(Doctor, WhatIsMissingIsSaidWithAdvice) {
@@ -86,10 +107,18 @@ TEST_F(Doctor, AStoreThatIsAFileIsNotCalledUnwritable) {
 }
 
 TEST_F(Doctor, AStoreThatMayNotBeWrittenSaysSo) {
-  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  // root may write everywhere; access() asks for the real user
+  const bool root = ::geteuid() == 0;
+  std::filesystem::permissions(folder_.path(), std::filesystem::perms(0755));
   std::filesystem::create_directory(folder_.file("store"));
-  std::filesystem::permissions(folder_.file("store"), std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  std::filesystem::permissions(folder_.file("store"), std::filesystem::perms(0555));
+  if (root) {
+    ASSERT_EQ(::setresuid(65534, 65534, 0), 0);
+  }
   const Json found = checks()["store"];
+  if (root) {
+    ASSERT_EQ(::setresuid(0, 0, 0), 0);
+  }
   EXPECT_NE(found["advice"].get<std::string>().find("may write"), std::string::npos) << found;
   std::filesystem::permissions(folder_.file("store"), std::filesystem::perms::owner_all);
 }

@@ -1,5 +1,5 @@
 #!/bin/bash
-# The demonstrations of knots, by device poses only: each must be called what it is; the square and the surgeon's knot must be cut, hold and pass,
+# The demonstrations of knots, by device poses only: each must be called what it is; the square knot (with needle holder or a second forceps) and the surgeon's must be cut, hold and pass,
 # the square knot's recording replay bit for bit, and the granny must not pass. Usage: knot_demo_test.sh FILUM ROOT
 filum=$1 root=$2
 work=$(mktemp -d)
@@ -22,6 +22,7 @@ tied() {
 
 tied knot-granny granny 2 2 false
 tied knot-surgeons surgeons 2 2 true
+tied knot-two-forceps square 2 2 true
 tied knot-square square 2 2 true --record "$work/knot.filum"
 "$filum" replay "$work/knot.filum" --json >"$work/replay.json" || fail "replay: $(cat "$work/replay.json")"
 grep -q '"identical": *true' "$work/replay.json" || fail "replay differs: $(cat "$work/replay.json")"

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <set>
 
+#include "base/error.h"
+#include "cli/setup.h"
 #include "program_call.h"
 #include "tests/session/synthetic.h"
 
@@ -33,6 +35,33 @@ TEST(List, EveryTaskOnDiskIsListedOnceWithItsTitle) {
   EXPECT_EQ(names_of(d["rigs"]), (std::set<std::string>{"tissue-block", "spatula-press", "vessel-inflation", "suture-cantilever", "suture-pull", "needle-insertion", "forceps-bridge", "tip-hold"}));
   for (const char* effect : {"viscoelastic-relaxation", "mains-hum", "elastic_rod", "needle_track"}) EXPECT_TRUE(names_of(d["effects"]).count(effect)) << effect;
   for (const auto& model : d["models"]) EXPECT_TRUE(fs::exists(fs::path(FILUM_SOURCE_DIR) / "models" / (model.get<std::string>() + ".yaml"))) << model;
+}
+
+/// What the list offers for --model is taken by a task; what it does not is refused.
+TEST(List, SaysWhichModelsATaskTakes) {
+  const auto d = call({"list", "--json"}).json();
+  ASSERT_EQ(d["model_details"].size(), d["models"].size());
+  int sutures = 0, baselines = 0;
+  for (const auto& model : d["model_details"]) {
+    const std::string name = model["name"], file = std::string(FILUM_SOURCE_DIR) + "/models/" + name + ".yaml", kind = model["kind"];
+    EXPECT_FALSE(kind.empty()) << name;
+    EXPECT_EQ(model["for_tasks"].get<bool>(), kind == "suture" || kind == "brain") << name;
+    sutures += kind == "suture";
+    baselines += kind == "baseline";
+    const auto loads = [&](const char* task) {
+      try {
+        load_setup(FILUM_SOURCE_DIR, task, file);
+        return true;
+      } catch (const InputError&) {
+        return false;
+      }
+    };
+    EXPECT_EQ(loads("knot-square"), kind == "suture") << name;
+    if (kind != "suture") { EXPECT_EQ(loads("press-to-target"), kind == "brain") << name; }
+  }
+  EXPECT_EQ(sutures, 6);
+  EXPECT_EQ(baselines, 7);
+  EXPECT_NE(call({"list"}).out.find("suture/capstan                 baseline"), std::string::npos);
 }
 
 TEST(List, TextNamesTheSameTasks) {

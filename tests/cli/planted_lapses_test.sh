@@ -6,7 +6,7 @@ filum=$1 root=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "planted_lapses_test: $*"; head -c 3000 "$work"/run.json; exit 1; }
-"$filum" run vessel-lapses --root "$root" --input demo --record "$work/lapses.filum" --json >"$work/run.json" 2>"$work/run.err" || fail "run: $(cat "$work/run.err")"
+"$filum" run anastomosis-lapses --root "$root" --input demo --record "$work/lapses.filum" --json >"$work/run.json" 2>"$work/run.err" || fail "run: $(cat "$work/run.err")"
 node -e '
   const d = JSON.parse(require("fs").readFileSync(process.argv[1])), s = d.stitches;
   const found = d.lapses.map((l) => l.name + " " + l.stitch).sort().join(", ");

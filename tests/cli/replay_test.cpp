@@ -36,6 +36,37 @@ TEST(Replay, TheFirstStepThatDiffersIsNamedAndTheExitCodeSaysSo) {
   EXPECT_NE(call({"replay", folder.file("altered")}).out.find("first difference at step 100 "), std::string::npos);
 }
 
+TEST(Replay, WithoutAStepThereIsNothingToReplay) {
+  const synthetic::Folder folder;
+  make_recorder(folder.file("none"), load_setup(FILUM_SOURCE_DIR, "tip-hold"), "pointer")->close();
+  expect_refused({"replay", folder.file("none"), "--json"}, {folder.file("none"), "steps: found none", "nothing to replay"});
+  expect_refused({"score", folder.file("none"), "--json"}, {folder.file("none"), "steps: found none", "nothing to replay"});
+}
+
+TEST(Replay, DamageBesideTheStepsIsNamedAndTheStepsAreCompared) {
+  const synthetic::Folder folder;
+  recorded_run(folder.file("one"));
+  write_altered(folder.file("one"), folder.file("sound"), 0);
+  damage(folder.file("sound"), "planted-event", folder.file("events"));
+  for (const char* command : {"replay", "score"}) {
+    const Call c = call({command, folder.file("events"), "--json"});
+    EXPECT_EQ(c.code, kBadInput) << command;
+    EXPECT_NE(c.err.find("events block 1 with a wrong checksum"), std::string::npos) << c.err;
+    const auto d = nlohmann::ordered_json::parse(c.out);
+    EXPECT_TRUE(d[command == std::string("replay") ? "identical" : "replay_identical"].get<bool>()) << command;
+    EXPECT_EQ(d["damage"], nlohmann::ordered_json({"events block 1 with a wrong checksum"}));
+  }
+}
+
+TEST(Replay, AFileOfAnotherTaskThatIsDamagedDoesNotHinder) {
+  const synthetic::Folder folder;
+  recorded_run(folder.file("one"));
+  damage(folder.file("one"), "filum-suture/1", folder.file("suture"));
+  const Call c = call({"replay", folder.file("suture"), "--json"});
+  EXPECT_EQ(c.code, kBadInput);
+  EXPECT_NE(c.err.find("source models/suture/"), std::string::npos) << c.err;
+}
+
 TEST(Replay, WhatIsNoRecordingIsBadInput) {
   const synthetic::Folder folder;
   std::ofstream(folder.file("text")) << "not a recording";

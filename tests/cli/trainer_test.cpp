@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "base/error.h"
+#include "altered_recording.h"
 #include "started_trainer.h"
 #include "tests/session/disk_limit.h"
 
@@ -100,6 +102,38 @@ TEST(Trainer, WithoutAStoreItTrainsAndWarns) {
   EXPECT_FALSE(running.at("recording").get<bool>());
   EXPECT_NE(running.at("warning").get<std::string>().find("NOT being stored"), std::string::npos);
   EXPECT_TRUE(trainer.get("/api/sessions").at("sessions").empty());
+}
+
+TEST(Trainer, RatingsThatCannotBeOpenedAreWarnedOfAndSessionsAreStored) {
+  const synthetic::Folder folder;
+  std::filesystem::create_directory(folder.file("store"));
+  std::ofstream(folder.file("store/ratings.sqlite")) << "rubbish";
+  TrainerOptions options;
+  options.store_folder = folder.file("store");
+  StartedTrainer trainer(options);
+  EXPECT_NE(trainer->store_warning().find("Ratings are NOT being stored"), std::string::npos) << trainer->store_warning();
+  Client browser(trainer.port());
+  browser.say(R"({"type":"start","task":"tip-hold","input":"demo"})");
+  const json running = hear_state(browser, "running");
+  EXPECT_TRUE(running.at("recording").get<bool>());
+  EXPECT_NE(running.at("warning").get<std::string>().find("ratings.sqlite"), std::string::npos);
+}
+
+TEST(Trainer, ADamagedRecordingIsShownAndWarnedOf) {
+  const StartedTrainer trainer;
+  Client browser(trainer.port());
+  browser.say(R"({"type":"start","task":"tip-hold","input":"demo"})");
+  const std::string id = hear_state(browser, "running").at("session");
+  browser.say(R"({"type":"stop"})");
+  hear_state(browser, "ended");
+  const std::string file = trainer.folder().file("store/" + id + kRecordingSuffix), sound = trainer.folder().file("sound");
+  std::filesystem::rename(file, sound);
+  damage(sound, "filum-suture/1", file);
+  browser.say(R"({"type":"replay_open","session":")" + id + "\"}");
+  const std::string warning = hear_state(browser, "replay").at("warning");
+  EXPECT_EQ(warning.find("This recording is damaged: source models/suture/"), 0u) << warning;
+  browser.say(R"({"type":"stop"})");
+  EXPECT_EQ(hear_state(browser, "idle").at("warning"), "");
 }
 
 TEST(Trainer, OnAFullDiskBothTheRecordingAndTheIndexAreWarnedOf) {

@@ -24,6 +24,7 @@ TEST(Plectoneme, KeepsTheTurnsItWasGivenAsTwistAndWrithe) {
   ASSERT_NEAR(p.linking(), 0.0, 1e-3);
   p.wind(5.0);
   EXPECT_NEAR(p.linking(), 5.0, 1e-3);
+  EXPECT_LT(p.farthest(), 0.1);  // a passage would lose two turns
   EXPECT_GT(p.ply().contacts, 5);
 }
 

@@ -127,6 +127,19 @@ WallOptions exact() {
   return options;
 }
 
+TEST(WallLateTolerance, IsStrictAtFirstAndGrowsUpToItsLimit) {
+  WallOptions o;
+  o.tolerance = 1e-5;
+  o.strict_iterations = 5;
+  EXPECT_DOUBLE_EQ(late_tolerance(o, 4), 1e-5);
+  EXPECT_NEAR(late_tolerance(o, 5), 1.6e-5, 1e-12);
+  EXPECT_NEAR(late_tolerance(o, 6), 2.56e-5, 1e-12);
+  EXPECT_NEAR(late_tolerance(o, 16), 3e-5, 1e-12);
+  o.tolerance = 3e-4;
+  EXPECT_DOUBLE_EQ(late_tolerance(o, 16), 3e-4) << "never stricter than at first";
+  EXPECT_DOUBLE_EQ(late_tolerance(WallOptions(), 24), WallOptions().tolerance) << "not in closed-form problems";
+}
+
 /// A step under a dead load leaves the wall where one under something that ends with that force does.
 void expect_dead_load_is_same(const WallState& before, const WallState& after, const WallPoint& at, const Vec3& force) {
   VesselWall wall = stump(exact());

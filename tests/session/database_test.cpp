@@ -82,6 +82,35 @@ TEST(Database, BlobsCarryAnyBytes) {
   }
 }
 
+TEST(Database, DamageIsToldFromALockAndFromWantOfRoom) {
+  const Folder folder;
+  const auto failure_of = [](soci::session& sql, const std::string& statement) {
+    try {
+      sql << statement;
+    } catch (const soci::soci_error& error) {
+      return database::failure_of(error);
+    }
+    ADD_FAILURE() << "no failure";
+    return database::Failure::kOther;
+  };
+  const std::string file = folder.file("db");
+  soci::session sql(soci::sqlite3, database::connection_string(file, false));
+  sql << "CREATE TABLE t (a TEXT)";
+  EXPECT_EQ(failure_of(sql, "SELECT b FROM nowhere"), database::Failure::kOther);
+  sql << "PRAGMA max_page_count = 2";
+  EXPECT_EQ(failure_of(sql, "INSERT INTO t (a) VALUES (hex(zeroblob(20000)))"), database::Failure::kNoRoom);
+  {
+    soci::session other(soci::sqlite3, "dbname=\"" + file + "\" timeout=0");
+    sql << "BEGIN EXCLUSIVE";
+    EXPECT_EQ(failure_of(other, "SELECT count(*) FROM t"), database::Failure::kLocked);
+    sql << "ROLLBACK";
+  }
+  std::ofstream(folder.file("text")) << std::string(4096, 'x');
+  soci::session text(soci::sqlite3, database::connection_string(folder.file("text"), false));
+  EXPECT_EQ(failure_of(text, "CREATE TABLE t (a TEXT)"), database::Failure::kDamage);
+  EXPECT_EQ(database::failure_of(std::runtime_error("something else")), database::Failure::kOther);
+}
+
 TEST(Database, ReasonsLeaveOutTheStatement) {
   soci::session sql(soci::sqlite3, database::connection_string(":memory:", false));
   try {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <set>
 
 #include "base/units.h"
@@ -65,8 +66,49 @@ TEST_F(ExportTables, WhatADeviceDidNotMeasureIsEmptyNotZero) {
 
 TEST_F(ExportTables, EventsHashesAndScoreAreThere) {
   EXPECT_EQ(values<std::string>(table(tables_, "events"), "name"), std::vector<std::string>(20, "grasp"));
+  EXPECT_EQ(values<std::string>(table(tables_, "events"), "text")[0], "the jaws hold edge 10");
   EXPECT_EQ(values<std::string>(table(tables_, "array_hashes"), "array").size(), 4u);
   EXPECT_EQ(values<double>(table(tables_, "score"), "total"), std::vector<double>{87.5});
+}
+
+TEST_F(ExportTables, SamplesTellTheirRate) {
+  // samples 2 to 401, 1 ms apart, in turn from two tools: 199 intervals of 2 ms each
+  EXPECT_DOUBLE_EQ(table(tables_, "samples").rate, 500.0);
+  for (const double rate : values<double>(table(tables_, "samples"), "rate")) EXPECT_DOUBLE_EQ(rate, 500.0);
+}
+
+TEST_F(ExportTables, ToolsOfDifferentRatesEachTellTheirOwn) {
+  {
+    Recorder recorder(synthetic::options(folder_.file("b")));
+    for (int n = 0; n <= 100; ++n) {
+      SampleRecord s;
+      s.host_time_us = 1000 * n;
+      recorder.record_sample(s);
+      s.tool = 1;
+      if (n % 4 == 0) recorder.record_sample(s);
+    }
+    ASSERT_TRUE(recorder.close());
+  }
+  const auto tables = recorded_tables(RecordingReader(folder_.file("b")));
+  const Table& samples = table(tables, "samples");
+  EXPECT_EQ(samples.rate, 0.0);
+  const auto& tool = values<std::int64_t>(samples, "tool");
+  for (std::size_t i = 0; i < tool.size(); ++i) EXPECT_DOUBLE_EQ(values<double>(samples, "rate")[i], tool[i] == 0 ? 1000.0 : 250.0);
+}
+
+TEST_F(ExportTables, DamagedBlocksAreLeftOutAndTheOthersRead) {
+  std::string bytes;
+  {
+    std::ifstream in(folder_.file("a"), std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const std::size_t at = bytes.find("the jaws hold edge 10");
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = 'T';
+  std::ofstream(folder_.file("b"), std::ios::binary) << bytes;
+  const auto tables = recorded_tables(RecordingReader(folder_.file("b")));
+  EXPECT_TRUE(table(tables, "events").columns.empty());
+  EXPECT_EQ(values<double>(table(tables, "samples"), "grip_force").size(), 400u);
 }
 
 TEST_F(ExportTables, EveryColumnHasItsOwnNameAUnitAndAMeaning) {

@@ -29,6 +29,7 @@ void write_bytes(const std::string& file, const std::string& bytes) {
 /// Everything in a recording as one hash; throws InputError when any of it is damaged.
 std::uint64_t read_whole(const std::string& file) {
   const RecordingReader recording(file);
+  if (const auto damage = recording.find_damage(); !damage.empty()) throw InputError(file, "recording", damage.front(), "none");
   std::uint64_t hash = recording.finished() ? 1 : 0;
   StepRecord step;
   SampleRecord sample;
@@ -97,7 +98,7 @@ TEST(RecordingReader, SaysWhenAFileIsFromANewerProgram) {
     FAIL() << "a newer format was taken";
   } catch (const InputError& error) {
     EXPECT_NE(
-        std::string(error.what()).find("format: found 3, made by a newer Filum, expected a format up to 1"),
+        std::string(error.what()).find("format: found 3, made by a newer Filum, expected a format up to 2"),
         std::string::npos)
         << error.what();
   }
@@ -133,6 +134,131 @@ TEST(RecordingReader, AFlippedBitIsFoundOrDoesNotMatter) {
     }
   }
   EXPECT_GT(found, 200);  // most of the file is records
+}
+
+/// Turns one bit of what a table holds in a row.
+void flip(const std::string& file, const std::string& change) {
+  soci::session sql(soci::sqlite3, database::connection_string(file, false));
+  sql << change;
+}
+
+template <class Record>
+int count_readable(RecordCursor<Record> cursor) {
+  Record record;
+  int n = 0;
+  while (cursor.next_readable(record)) ++n;
+  return n;
+}
+
+using Damage = std::vector<std::string>;
+
+TEST(RecordingReader, DamageIsNamedByItsPlaceAndWhatIsBesideItIsRead) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 1000);
+  EXPECT_EQ(RecordingReader(folder.file("a")).find_damage(), Damage{});
+  for (const char* table : {"steps", "samples", "events", "array_hashes"}) {
+    const std::string file = folder.file(std::string("a ") + table);
+    std::filesystem::copy_file(folder.file("a"), file);
+    flip(file, std::string("UPDATE ") + table + " SET data = CAST(x'00' || substr(data, 2) AS BLOB) WHERE id = 1");
+    const RecordingReader recording(file);
+    EXPECT_EQ(recording.find_damage(), Damage{std::string(table) + " block 1 with a wrong checksum"});
+    EXPECT_EQ(recording.last_step(), 1000u);
+  }
+  const RecordingReader whole(folder.file("a")), samples(folder.file("a samples")), events(folder.file("a events"));
+  EXPECT_EQ(count_readable(whole.samples()), 2000);
+  EXPECT_EQ(count_readable(samples.steps()), 1000);
+  EXPECT_EQ(count_readable(samples.samples()), 2000 - 256) << "blocks behind the damaged one are read";
+  EXPECT_LT(count_readable(events.events()), count_readable(whole.events()));
+  SampleRecord record;
+  auto cursor = samples.samples();
+  EXPECT_THROW(cursor.next(record), InputError);
+  ASSERT_TRUE(cursor.next(record)) << "and goes on";
+  EXPECT_TRUE(synthetic::same(record, synthetic::sample(2 + 256)));
+}
+
+TEST(RecordingReader, SeveralPlacesAreAllNamedAndABlockThatIsGoneToo) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 1000);
+  flip(folder.file("a"), "UPDATE samples SET hash = hash + 1 WHERE id = 3");
+  flip(folder.file("a"), "DELETE FROM samples WHERE id = 5");
+  flip(folder.file("a"), "UPDATE texts SET value = value || ' ' WHERE name = 'models/suture/test.yaml'");
+  const RecordingReader recording(folder.file("a"));
+  EXPECT_EQ(recording.find_damage(), (Damage{"source models/suture/test.yaml with a wrong checksum", "samples block 3 with a wrong checksum", "samples block 5 missing"}));
+  EXPECT_EQ(count_readable(recording.samples()), 2000 - 2 * 256);
+  EXPECT_EQ(recording.sources().size(), 1u) << "the source beside it";
+  EXPECT_TRUE(recording.score().has_value());
+}
+
+TEST(RecordingReader, ANameThatWasChangedInTheFileIsNoticed) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 20);
+  std::string bytes = bytes_of(folder.file("a"));
+  const std::size_t at = bytes.find("models/suture/test.yaml");
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = 'M';
+  write_bytes(folder.file("a"), bytes);
+  const Damage damage = RecordingReader(folder.file("a")).find_damage();
+  ASSERT_EQ(damage.size(), 1u);
+  EXPECT_EQ(damage[0].find("structure of the file: "), 0u) << damage[0];
+}
+
+TEST(RecordingReader, WithoutItsDescriptionNothingIsRead) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 20);
+  flip(folder.file("a"), "UPDATE texts SET hash = hash + 1 WHERE kind = 'meta' AND name = 'meta'");
+  try {
+    RecordingReader recording(folder.file("a"));
+    FAIL() << "read";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.value, "no description of itself (meta meta with a wrong checksum)");
+  }
+}
+
+TEST(RecordingReader, TheLastStepIsThatOfTheLastBlockThatCanBeRead) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 1000);
+  EXPECT_EQ(RecordingReader(folder.file("a")).last_step(), 1000u);
+  flip(folder.file("a"), "UPDATE steps SET hash = hash + 1 WHERE id = (SELECT max(id) FROM steps)");
+  const std::uint64_t before = RecordingReader(folder.file("a")).last_step();
+  EXPECT_LT(before, 1000u);
+  EXPECT_GE(before, 1000u - 256u);
+  synthetic::write_recording(folder.file("none"), 0);
+  EXPECT_EQ(RecordingReader(folder.file("none")).last_step(), 0u);
+}
+
+TEST(RecordingReader, EventsOfFormat1AreReadWithoutText) {
+  const Folder folder;
+  EventRecord with = synthetic::event(1), without = with;
+  with.text = "square";
+  {
+    Recorder recorder(synthetic::options(folder.file("a")));
+    recorder.record_event(with);
+    ASSERT_TRUE(recorder.close());
+  }
+  std::vector<char> bytes;
+  pack(std::span<const EventRecord>(&without, 1), bytes);
+  bytes.pop_back();  // the length of its empty text
+  {
+    soci::session sql(soci::sqlite3, database::connection_string(folder.file("a"), false));
+    std::string hex;
+    for (const char c : bytes) {
+      char two[3];
+      std::snprintf(two, sizeof two, "%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+      hex += two;
+    }
+    const auto hash = static_cast<long long>(hash_bytes(bytes.data(), bytes.size(), 1));
+    EventRecord read;
+    ASSERT_TRUE(RecordingReader(folder.file("a")).events().next(read));
+    EXPECT_EQ(read.text.view(), "square");
+    sql << "UPDATE events SET data = x'" + hex + "', hash = :h", soci::use(hash);
+    sql << "PRAGMA user_version = 1";
+  }
+  const RecordingReader old(folder.file("a"));
+  EXPECT_EQ(old.meta().format, 1);
+  EXPECT_EQ(old.find_damage(), Damage{});
+  EventRecord read;
+  ASSERT_TRUE(old.events().next(read));
+  EXPECT_TRUE(synthetic::same(read, without));
 }
 
 TEST(RecordingReader, AMissingBlockIsFound) {

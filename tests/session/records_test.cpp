@@ -77,6 +77,8 @@ TEST(Records, BytesOfAnotherLengthAreRefused) {
 TEST(Records, FixedTextCutsAndCompares) {
   const FixedText<5> text("abcdefgh");
   EXPECT_EQ(text.view(), "abcd");
+  EXPECT_EQ(FixedText<5>("abc\u00e9").view(), "abc") << "no half of a character";
+  EXPECT_EQ(FixedText<6>("abc\u00e9").view(), "abc\u00e9");
   EXPECT_EQ(FixedText<5>(""), FixedText<5>());
   EXPECT_FALSE(text == FixedText<5>("abce"));
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "base/error.h"
 #include "session/export.h"
@@ -125,6 +126,28 @@ TEST(Replay, AGapInTheStepsIsAnInputError) {
     if (record.step > 100) ++record.step;
   });
   EXPECT_THROW(replay_file(folder.file("a")), InputError);
+}
+
+TEST(Replay, StopsAtADamagedBlockOfStepsAndSaysSo) {
+  const synthetic::Folder folder;
+  record_session(folder.file("a"), {}, 600);
+  std::string bytes;
+  {
+    std::ifstream in(folder.file("a"), std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  StepRecord last;
+  for (auto steps = RecordingReader(folder.file("a")).steps(); steps.next(last);) {}
+  const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&last.state_hash), sizeof last.state_hash));
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = static_cast<char>(bytes[at] ^ 1);
+  std::ofstream(folder.file("b"), std::ios::binary) << bytes;
+  const ReplayResult result = replay_file(folder.file("b"));
+  EXPECT_FALSE(result.identical);
+  EXPECT_FALSE(result.first_difference.has_value());
+  EXPECT_GT(result.steps, 0u);
+  EXPECT_LT(result.steps, 600u);
+  EXPECT_EQ(result.damage.find("steps block "), 0u) << result.damage;
 }
 
 TEST(Replay, SimulatedTableHasARowForEveryStep) {

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "session/database.h"
+#include "tests/session/disk_limit.h"
 #include "tests/session/synthetic.h"
 
 namespace filum {
@@ -145,6 +146,74 @@ TEST(Store, RebuildGivesUnscoredSessionsTheirLength) {
   EXPECT_TRUE(store.rebuild().empty());
   EXPECT_NEAR(store.find("x")->seconds, 1.0, 1e-12);
   EXPECT_FALSE(store.find("x")->scored);
+}
+
+TEST(Store, SessionsThatWereCutShortGetTheLengthOfWhatIsStored) {
+  const Folder folder;
+  std::string id, empty;
+  {
+    Store store(folder.file("s"));
+    id = store.begin("knot-square", "").id;
+    empty = store.begin("knot-square", "B").id;
+    synthetic::write_recording(store.file_of(id), 500, false);
+    EXPECT_EQ(store.find(id)->seconds, 0.0);
+  }  // killed before finish()
+  Store store(folder.file("s"));
+  EXPECT_NEAR(store.find(id)->seconds, 1.0, 1e-12);
+  EXPECT_FALSE(store.find(id)->finished);
+  EXPECT_EQ(store.find(empty)->seconds, 0.0);
+  store.finish(id, std::nullopt);
+  EXPECT_NEAR(store.find(id)->seconds, 1.0, 1e-12) << "ended without a score";
+}
+
+TEST(Store, ARecordingThatIsDamagedInPartIsEnteredAndReported) {
+  const Folder folder;
+  Store store(folder.file("s"));
+  const std::string id = record_one(store, "A1").id;
+  {
+    soci::session sql(soci::sqlite3, database::connection_string(store.file_of(id), false));
+    sql << "UPDATE events SET hash = hash + 1";
+  }
+  const auto problems = store.rebuild();
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].what, "events block 1 with a wrong checksum");
+  EXPECT_EQ(store.find(id)->total, 87.5);
+}
+
+/// What opening a store said, and whether its index still is the file it was.
+void expect_left_alone(const std::string& folder, StoreTrouble trouble) {
+  try {
+    Store store(folder);
+    FAIL() << "opened";
+  } catch (const StoreError& error) {
+    EXPECT_EQ(error.trouble, trouble) << error.what();
+  }
+  for (const auto& file : std::filesystem::directory_iterator(folder)) EXPECT_EQ(file.path().string().find("damaged"), std::string::npos) << file.path();
+}
+
+TEST(Store, ALockedIndexIsNotTakenForADamagedOne) {
+  const Folder folder;
+  std::string id;
+  {
+    Store store(folder.file("s"));
+    id = record_one(store, "A17").id;
+  }
+  {
+    soci::session other(soci::sqlite3, database::connection_string(folder.file("s/index.sqlite"), false));
+    other << "BEGIN EXCLUSIVE";
+    expect_left_alone(folder.file("s"), StoreTrouble::kLocked);
+  }
+  EXPECT_TRUE(Store(folder.file("s")).find(id).has_value());
+}
+
+TEST(Store, AnIndexThatCannotGrowIsNotTakenForADamagedOne) {
+  const Folder folder;
+  { Store store(folder.file("s")); }
+  std::filesystem::remove(folder.file("s/index.sqlite"));
+  {
+    const DiskLimit full(0);
+    expect_left_alone(folder.file("s"), StoreTrouble::kDatabase);
+  }
 }
 
 TEST(Store, RefusesAFolderItCannotWrite) {

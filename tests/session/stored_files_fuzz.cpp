@@ -22,6 +22,8 @@ void read_recording(const fuzz::Folder& folder, std::string_view bytes) {
   drain(recording.samples(), SampleRecord());
   drain(recording.events(), EventRecord());
   drain(recording.array_hashes(), ArrayHashRecord());
+  recording.find_damage();
+  recording.last_step();
 }
 
 void read_index(const fuzz::Folder& folder, std::string_view bytes) {
@@ -49,12 +51,14 @@ void unpack_and_pack(std::span<const char> bytes, std::size_t count, Tools... to
 
 void read_blocks(std::string_view bytes) {
   if (bytes.size() < 2) return;
-  const int kind = static_cast<unsigned char>(bytes[0]) % 7;
+  const int kind = static_cast<unsigned char>(bytes[0]) % 8;
   const auto count = static_cast<std::size_t>(static_cast<unsigned char>(bytes[1]));
   const std::span<const char> block(bytes.data() + 2, bytes.size() - 2);
+  std::vector<EventRecord> events;
   if (kind < 4) unpack_and_pack<StepRecord>(block, count, kind);
   else if (kind == 4) unpack_and_pack<SampleRecord>(block, count);
   else if (kind == 5) unpack_and_pack<EventRecord>(block, count);
+  else if (kind == 7) unpack_without_text(block, count, events);
   else unpack_and_pack<ArrayHashRecord>(block, count);
 }
 

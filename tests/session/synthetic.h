@@ -61,6 +61,7 @@ inline EventRecord event(std::uint64_t n) {
   record.tool = static_cast<int>(n % 2);
   record.value = 0.25 * static_cast<double>(n);
   record.unit = "N";
+  if (n % 2 == 0) record.text = std::string_view("the jaws hold edge " + std::to_string(n));
   return record;
 }
 
@@ -90,7 +91,7 @@ inline bool same(const SampleRecord& a, const SampleRecord& b) {
 
 inline bool same(const EventRecord& a, const EventRecord& b) {
   return a.step == b.step && a.time == b.time && a.name == b.name && a.tool == b.tool && a.value == b.value &&
-         a.unit == b.unit;
+         a.unit == b.unit && a.text == b.text;
 }
 
 inline RecordingMeta meta() {

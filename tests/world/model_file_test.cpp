@@ -50,6 +50,19 @@ TEST_F(ModelFile, MeasuredWithoutUncertaintySourceOrUnitIsRefused) {
   EXPECT_EQ(field("{ value: \"-23 um\", uncertainty: \"2 um\", source: \"a table\" }"), "d.value");
 }
 
+TEST_F(ModelFile, APointBeyondAMetreIsRefusedWithItsCoordinates) {
+  const YamlNode f = open("a: [\"1 mm\", \"-2 mm\", \"0.3 m\"]\nb: [\"1 mm\", \"2 km\", \"0 mm\"]");
+  EXPECT_LT((read_point(f, "a") - Vec3(1e-3, -2e-3, 0.3)).norm(), 1e-15);
+  try {
+    read_point(f, "b");
+    FAIL() << "accepted";
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.field, "b");
+    EXPECT_EQ(e.value, "[\"1 mm\", \"2 km\", \"0 mm\"]");
+    EXPECT_EQ(e.expected, "a point within 1000 mm of the origin");
+  }
+}
+
 TEST_F(ModelFile, DirectionIsOfLengthOneAndNotZero) {
   const YamlNode f = open("a: [0, 3, 4]\nb: [0, 0, 0]");
   EXPECT_LT((read_direction(f, "a") - Vec3(0, 0.6, 0.8)).norm(), 1e-15);

@@ -108,6 +108,28 @@ TEST(World, InputThatIsNotANumberIsIgnored) {
   for (const InstrumentState& i : w.state().instruments) EXPECT_TRUE(i.X_WT.finite() && i.v.allFinite() && std::isfinite(i.angle));
 }
 
+TEST(World, AnInputComesBackOnlyAfterItWasLost) {
+  for (const char* task : {"knot-square", "press-to-target"}) {
+    World w(load_model(FILUM_SOURCE_DIR, task));
+    Inputs in;
+    w.step(in);
+    EXPECT_EQ(w.observation().n_events, 0) << task << ": nothing was ever heard";
+    EXPECT_FALSE(w.observation().tools[0].input_valid);
+    const auto live = [&](bool valid) {
+      in.tools[0].X_WD = w.observation().tools[0].X_WT;
+      in.tools[0].valid = valid;
+      w.step(in);
+      return w.observation().n_events == 0 ? std::string() : std::string(w.observation().events[0].name);
+    };
+    EXPECT_EQ(live(true), "") << task << ": heard for the first time";
+    EXPECT_TRUE(w.observation().tools[0].input_valid);
+    EXPECT_EQ(live(false), "input-lost") << task;
+    EXPECT_FALSE(w.observation().tools[0].input_valid);
+    EXPECT_EQ(live(false), "") << task;
+    EXPECT_EQ(live(true), "input-back") << task;
+  }
+}
+
 TEST(World, SilentDeviceKeepsItsToolStill) {
   World w(scene());
   run(w, 0, 1);

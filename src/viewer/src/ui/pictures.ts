@@ -202,7 +202,7 @@ const kScenes: Record<string, (title: string) => SVGElement> = {
   "artery-stitch": (title) => vesselPicture(title, "#cf8378", 0),
   "anastomosis-8": (title) => joinPicture(title, [0, 180], [45, 90, 135, 225, 270, 315]),
   "vessel-stitch": (title) => vesselPicture(title, "#dcc8b6", 0),
-  "vessel-lapses": lapsesPicture,
+  "anastomosis-lapses": lapsesPicture,
   "stitch-throw": (title) => vesselPicture(title, "#dcc8b6", 1),
   "stitch-knot": (title) => vesselPicture(title, "#dcc8b6", 3),
   "artery-knot": (title) => vesselPicture(title, "#cf8378", 3),

@@ -34,7 +34,7 @@ export function sessionTable(list: SessionInfo[]): HTMLElement {
 }
 
 function row(one: SessionInfo): HTMLElement {
-  const verdict = one.passed === null ? (one.finished ? "not scored" : "interrupted") : one.passed ? "✓ passed" : "✕ not passed";
+  const verdict = one.passed === null ? (one.finished ? "not scored" : "cut short") : one.passed ? "✓ passed" : "✕ not passed";
   const id = encodeURIComponent(one.id), title = one.title || one.task;
   return h("tr", { "data-session": one.id }, h("td", {}, day(one.started)), h("th", { scope: "row" }, title), h("td", {}, kInputNames[one.input] ?? one.input), h("td", {}, one.code),
     h("td", { class: "number" }, clock(one.seconds)), h("td", { class: "number" }, one.total === null ? "–" : one.total.toFixed(0)), h("td", {}, verdict),

@@ -1,0 +1,54 @@
+#include "cli/trainer_check.h"
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "cli/inputs.h"
+#include "cli/setup.h"
+
+namespace filum {
+namespace {
+
+void check_tasks(const TrainerOptions& options) {
+  std::vector<std::string> problems;
+  if (!load_tasks(options.root, problems).empty()) return;
+  throw InputError("--root", "curricula", problems.empty() ? options.root : "no task that can be read (the first one said: " + problems[0] + ")", "a folder with models/ and curricula/");
+}
+
+void check_model(const TrainerOptions& options) {
+  if (options.model_file.empty()) return;
+  std::string last;
+  for (const std::string& task : task_names(options.root)) {
+    try {
+      load_setup(options.root, task, options.model_file);
+      return;
+    } catch (const InputError& error) {
+      last = error.what();
+    }
+  }
+  throw InputError("--model", "model", options.model_file, "a model that a task can take (the last one said: " + last + ")");
+}
+
+void check_viewer(const TrainerOptions& options) {
+  std::error_code error;
+  if (options.viewer_folder.empty() || std::filesystem::is_regular_file(std::filesystem::path(options.viewer_folder) / "index.html", error)) return;
+  throw InputError("--viewer", "index.html", "none in " + options.viewer_folder, "the folder of the built viewer (./filum builds it)");
+}
+
+/// Opened and let go again: the sessions open them anew.
+void check_devices(const TrainerOptions& options) {
+  if (!options.calibration.empty() && options.serial_port.empty()) throw InputError("--forceps", "calibration", options.calibration, "--serial PATH beside it");
+  const LiveDevices devices{options.serial_port, options.calibration, options.hands, options.motion_scale};
+  if (devices.any()) open_live_inputs(devices, options.root);
+}
+
+}  // namespace
+
+void check_trainer_options(const TrainerOptions& options) {
+  check_tasks(options);
+  check_model(options);
+  check_viewer(options);
+  check_devices(options);
+}
+
+}  // namespace filum
