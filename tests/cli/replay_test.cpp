@@ -61,7 +61,7 @@ TEST(Replay, DamageBesideTheStepsIsNamedAndTheStepsAreCompared) {
 TEST(Replay, AFileOfAnotherTaskThatIsDamagedDoesNotHinder) {
   const synthetic::Folder folder;
   recorded_run(folder.file("one"));
-  damage(folder.file("one"), "filum-suture/1", folder.file("suture"));
+  damage(folder.file("one"), "title: 8-0 polypropylene", folder.file("suture"));
   const Call c = call({"replay", folder.file("suture"), "--json"});
   EXPECT_EQ(c.code, kBadInput);
   EXPECT_NE(c.err.find("source models/suture/"), std::string::npos) << c.err;

@@ -1,6 +1,7 @@
 #pragma once
 // A trainer that runs in a thread of its own, on a free port, with a store that goes away with the test.
 
+#include <stdexcept>
 #include <thread>
 
 #include "cli/trainer.h"
@@ -38,10 +39,22 @@ class StartedTrainer {
   std::thread thread_;
 };
 
-/// What the browser is told next of the trainer's state, until it is `state`.
+/// What the browser is told next of the trainer's state, until it is `state`. Throws where it is told of an error instead.
 inline nlohmann::json hear_state(Client& client, const std::string& state) {
-  for (;;)
-    if (const nlohmann::json message = client.hear("session_state"); message.at("state") == state) return message;
+  for (;;) {
+    const nlohmann::json message = client.hear();
+    if (message.at("type") == "error") throw std::runtime_error(message.dump());
+    if (message.at("type") == "session_state" && message.at("state") == state) return message;
+  }
+}
+
+/// Plays frames until the scene is this far. [s]
+inline void run_until(Client& client, double time) {
+  for (;;) {
+    const nlohmann::json frame = client.hear("frame");
+    if (frame.at("time") >= time) return;
+    client.say(R"({"type":"ack","frame":)" + frame.at("id").dump() + "}");
+  }
 }
 
 }  // namespace filum

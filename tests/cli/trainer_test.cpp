@@ -29,11 +29,7 @@ TEST(Trainer, ATaskIsShownRecordedScoredAndReplayed) {
   EXPECT_TRUE(running.at("recording").get<bool>());
   const std::string id = running.at("session");
   EXPECT_FALSE(id.empty());
-  json frame = browser.hear("frame");
-  while (frame.at("time").get<double>() < 0.2) {
-    browser.say(R"({"type":"ack","frame":)" + frame.at("id").dump() + "}");
-    frame = browser.hear("frame");
-  }
+  run_until(browser, 0.2);
   browser.say(R"({"type":"stop"})");
   EXPECT_EQ(browser.hear("result").at("session"), id);
   hear_state(browser, "ended");
@@ -124,11 +120,12 @@ TEST(Trainer, ADamagedRecordingIsShownAndWarnedOf) {
   Client browser(trainer.port());
   browser.say(R"({"type":"start","task":"tip-hold","input":"demo"})");
   const std::string id = hear_state(browser, "running").at("session");
+  run_until(browser, 0.1);
   browser.say(R"({"type":"stop"})");
   hear_state(browser, "ended");
   const std::string file = trainer.folder().file("store/" + id + kRecordingSuffix), sound = trainer.folder().file("sound");
   std::filesystem::rename(file, sound);
-  damage(sound, "filum-suture/1", file);
+  damage(sound, "title: 8-0 polypropylene", file);
   browser.say(R"({"type":"replay_open","session":")" + id + "\"}");
   const std::string warning = hear_state(browser, "replay").at("warning");
   EXPECT_EQ(warning.find("This recording is damaged: source models/suture/"), 0u) << warning;
