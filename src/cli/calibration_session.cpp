@@ -110,7 +110,7 @@ void CalibrationSession::work() {
         if (guide.done() && ++at_ == guides_.size()) finish();
       }
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    if (emptied) std::this_thread::sleep_for(std::chrono::milliseconds(2));  // else behind, where the machine is busy: it would never catch up
   }
 }
 

@@ -52,6 +52,7 @@ class Reader {
     get(size);
     if (size >= N || bytes_.size() < size) return fail();
     text = FixedText<N>(std::string_view(bytes_.data(), size));
+    if (text.view().size() != size) return fail();  // a zero within: put() writes none
     bytes_ = bytes_.subspan(size);
   }
   bool ok() const { return ok_; }

@@ -142,7 +142,7 @@ void play(const Options& options, filum::ScriptFrames& frames, filum::Pty& pty) 
     frames.append(t, now);
     bool listening = true;
     for (Frame& frame : now) listening = listening && line.send(std::move(frame));
-    if (!listening) break;
+    if (!listening && !options.by_hand) break;  // a handle goes on: the port changes hands between who watches it and who calibrates it
     answer(pty, heard, frames, line, t);
   }
   line.report();

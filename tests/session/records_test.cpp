@@ -74,6 +74,16 @@ TEST(Records, BytesOfAnotherLengthAreRefused) {
   EXPECT_TRUE(unpack(bytes, 2, back));
 }
 
+TEST(Records, ATextWithAZeroWithinIsRefused) {
+  const std::vector<EventRecord> events{{3, 0.006, "throw", 1, 1.0, "-", "square"}};
+  std::vector<char> bytes;
+  pack(std::span<const EventRecord>(events), bytes);
+  std::vector<EventRecord> read;
+  ASSERT_TRUE(unpack(bytes, 1, read));
+  bytes[bytes.size() - 3] = '\0';
+  EXPECT_FALSE(unpack(bytes, 1, read));
+}
+
 TEST(Records, FixedTextCutsAndCompares) {
   const FixedText<5> text("abcdefgh");
   EXPECT_EQ(text.view(), "abcd");
