@@ -23,9 +23,9 @@ if(TARGET filum_scenes)
   filum_fuzz(world/model_file filum_scenes SEEDS models/suture/*.yaml models/instrument/*.yaml models/needle/*.yaml models/track/*.yaml models/vessel/*.yaml models/spatula/*.yaml)
   filum_fuzz(world/scene_file filum_scenes)
 endif()
-# training: tasks, rules of lapses, rating scales, limits of pressure
+# training: courses, tasks, rules of lapses, rating scales, limits of pressure
 if(TARGET filum_rules)
-  filum_fuzz(training/rule_files filum_rules SEEDS curricula/*/task.yaml curricula/research/*/task.yaml curricula/lapses/*.yaml curricula/scales/*.yaml models/brain/pressure-limits.yaml)
+  filum_fuzz(training/rule_files filum_rules SEEDS curricula/course.yaml curricula/*/task.yaml curricula/research/*/task.yaml curricula/lapses/*.yaml curricula/scales/*.yaml models/brain/pressure-limits.yaml)
 endif()
 # session: recordings, their packed blocks, a store's index, its ratings
 if(TARGET filum_records)

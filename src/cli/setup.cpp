@@ -49,13 +49,27 @@ Setup load_setup(const std::string& root, const std::string& task, const std::st
   return {root, model_file, turned(load_model(root, task, model_file), stiffness), load_task(task_file(root, task)), stiffness};
 }
 
+std::vector<Chapter> load_chapters(const std::string& root, std::vector<std::string>& problems) {
+  const std::string file = root + "/curricula/course.yaml";
+  std::vector<Chapter> course;
+  std::error_code error;
+  try {
+    if (fs::exists(file, error)) course = load_course(file);
+  } catch (const InputError& wrong) {
+    problems.emplace_back(wrong.what());
+  }
+  return chapters_of(course, task_names(root));
+}
+
 std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& problems) {
   std::vector<Task> tasks;
-  for (const std::string& name : task_names(root)) {
-    try {
-      tasks.push_back(load_task(task_file(root, name)));
-    } catch (const InputError& error) {
-      problems.emplace_back(error.what());
+  for (const Chapter& chapter : load_chapters(root, problems)) {
+    for (const std::string& name : chapter.tasks) {
+      try {
+        tasks.push_back(load_task(task_file(root, name)));
+      } catch (const InputError& error) {
+        problems.emplace_back(error.what());
+      }
     }
   }
   return tasks;

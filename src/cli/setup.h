@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "training/course.h"
 #include "training/task.h"
 #include "world/world.h"
 
@@ -24,7 +25,10 @@ Setup load_setup(const std::string& root, const std::string& task, const std::st
 /// Names of the folders below curricula/ that hold a task, in order.
 std::vector<std::string> task_names(const std::string& root);
 
-/// All tasks that can be read; those that cannot are left out and named in `problems`.
+/// Chapters of the course (curricula/course.yaml) with the tasks that there are; where it cannot be read, one chapter and a problem.
+std::vector<Chapter> load_chapters(const std::string& root, std::vector<std::string>& problems);
+
+/// All tasks that can be read, in the order of the course; those that cannot are left out and named in `problems`.
 std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& problems);
 
 /// Names of the model files, "suture/10-0-nylon".

@@ -25,6 +25,7 @@ json task_info_json(const TaskInfoView& task) {
   return {{"name", task.name},
           {"title", task.title},
           {"summary", task.summary},
+          {"chapter", task.chapter},
           {"demonstration", task.demonstration},
           {"picture", task.name},
           {"dial", task.dial},

@@ -11,6 +11,7 @@ namespace filum {
 
 struct TaskInfoView {
   std::string name, title, summary;
+  std::string chapter;         // of the course
   bool demonstration = false;  // shown by the demonstrator only
   bool dial = false;           // the stiffness of its tissue can be turned
   bool shown = true;           // there is a demonstration of it

@@ -39,6 +39,11 @@ TEST(Setup, EveryTaskThatIsListedCanBeRead) {
   EXPECT_EQ(tasks.size(), names.size());
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
   EXPECT_TRUE(holds(names, "tip-hold"));
+  EXPECT_EQ(tasks.front().name, "knot-throw") << "in the order of the course";
+  for (const Chapter& chapter : load_chapters(FILUM_SOURCE_DIR, problems)) EXPECT_NE(chapter.title, "Other tasks") << chapter.tasks.front();
+  std::size_t named = 0;
+  for (const Chapter& chapter : load_course(FILUM_SOURCE_DIR "/curricula/course.yaml")) named += chapter.tasks.size();
+  EXPECT_EQ(named, names.size()) << "the course names a task that is not there";
 }
 
 TEST(Setup, ModelsAreNamedByFolderAndFile) {

@@ -96,7 +96,7 @@ TEST(Encode, AnOverlayIsToldInItsUnitWhileItIsThere) {
 TEST(Encode, EveryOtherMessageFollowsTheSchema) {
   const SchemaCheck schema;
   const auto fault = [&schema](const std::string& text) { return schema.fault(json::parse(text), "ServerMessage"); };
-  HelloView hello{"0.1.0", {{"knot-square", "Square knot", "Tie it.", false}}, {{"serial \xff", "lost", 1, 2, 3, 4}}, {"pointer", "demo"}};
+  HelloView hello{"0.1.0", {{"knot-square", "Square knot", "Tie it.", "Knots", false}}, {{"serial \xff", "lost", 1, 2, 3, 4}}, {"pointer", "demo"}};
   EXPECT_EQ(fault(hello_message(hello, 3)), "");
   SceneDescription scene;
   scene.n_tools = 2;

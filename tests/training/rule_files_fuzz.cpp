@@ -1,7 +1,8 @@
-// Tasks, rules of lapses, rating scales and limits of pressure, told apart by their format line (any other text is a task): what was asked
+// Courses, tasks, rules of lapses, rating scales and limits of pressure, told apart by their format line (any other text is a task): what was asked
 // for or an InputError, nothing else.
 
 #include "fuzz_folder.h"
+#include "training/course.h"
 #include "training/lapse.h"
 #include "training/pressure.h"
 #include "training/rating_scale.h"
@@ -42,6 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const YamlNode file = YamlNode::parse(text, "fuzz.yaml");
     if (format == "filum-scale/1") read_scale(file);
+    else if (format == "filum-course/1") chapters_of(parse_course(file), {"knot-square"});
     else if (format == "filum-pressure/1") read_limits(file);
     else read_task(file);
   });

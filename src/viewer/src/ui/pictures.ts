@@ -98,7 +98,7 @@ function field(content: string, label: string): SVGElement {
 }
 
 /// The knot as a diagram above the post. `tools`: with the tips of two instruments pulling the tails.
-export function knotPicture(knot: string, label: string, tools: boolean): SVGElement {
+export function knotPicture(knot: string, label: string, tools: boolean, scale = 1): SVGElement {
   const throws = kThrows[knot] ?? [];
   const base = 8 + (throws.length - 2) * kSpacing * 0.5;
   if (throws.length === 0) {
@@ -114,7 +114,7 @@ export function knotPicture(knot: string, label: string, tools: boolean): SVGEle
   const jaws = tools ? `<g stroke="#2b333b" stroke-width=".6">
     <path d="M-40 ${top - 2}L-64 ${top - 20}L-64 ${top - 12}L-41 ${top + 1}Z" fill="#METAL"/><path d="M-40 ${top + 3}L-64 ${top + 2}L-64 ${top - 7}L-41 ${top + 0}Z" fill="#METAL"/>
     <path d="M40 ${top - 2}L64 ${top - 20}L64 ${top - 12}L41 ${top + 1}Z" fill="#METAL"/><path d="M40 ${top + 3}L64 ${top + 2}L64 ${top - 7}L41 ${top + 0}Z" fill="#METAL"/></g>` : "";
-  return field(post + round + knotPaths + jaws, label);
+  return field(`<g transform="scale(${scale})">${post + round + knotPaths + jaws}</g>`, label);
 }
 
 /// Cortex with its furrows and a spatula on it; two blades apart where the task opens a fissure.
@@ -199,6 +199,7 @@ function tipPicture(label: string, objects: boolean): SVGElement {
 
 const kScenes: Record<string, (title: string) => SVGElement> = {
   "knot-throw": (title) => knotPicture("overhand", title, true),
+  "knot-two-forceps": (title) => knotPicture("square", title, true, 0.8), // small enough for both instruments
   "artery-stitch": (title) => vesselPicture(title, "#cf8378", 0),
   "anastomosis-8": (title) => joinPicture(title, [0, 180], [45, 90, 135, 225, 270, 315]),
   "vessel-stitch": (title) => vesselPicture(title, "#dcc8b6", 0),

@@ -15,13 +15,13 @@ const kInputs: Record<InputKind, [string, string]> = {
 export class TasksPage implements Page {
   readonly title = "Tasks";
   readonly element = h("div", { class: "page tasks" });
-  private readonly cards = h("ul", { class: "cards" });
+  private readonly chapters = h("div", {});
   private readonly running = h("div", { class: "running" });
   private readonly recent = h("section", { class: "recent" });
   private readonly dialog = h("dialog", { class: "start", "aria-labelledby": "start-title" });
 
   constructor(private readonly app: App) {
-    this.element.append(h("h1", {}, "Choose a task"), this.running, this.cards, this.recent, this.dialog);
+    this.element.append(h("h1", {}, "Choose a task"), this.running, this.chapters, this.recent, this.dialog);
     this.showTasks();
     this.showRunning();
     void this.showRecent();
@@ -33,15 +33,23 @@ export class TasksPage implements Page {
   }
 
   private showTasks(): void {
-    clear(this.cards);
+    clear(this.chapters);
     const tasks = this.app.hello?.tasks;
-    if (!tasks) { this.cards.append(h("li", { class: "quiet" }, "Waiting for the trainer…")); return; }
-    for (const task of [...tasks].sort((a, b) => Number(a.demonstration) - Number(b.demonstration))) { // what can be practised first
+    if (!tasks) { this.chapters.append(h("p", { class: "quiet" }, "Waiting for the trainer…")); return; }
+    for (const chapter of new Set(tasks.map((task) => task.chapter))) {
+      this.chapters.append(h("section", { "aria-label": chapter }, h("h2", {}, chapter), this.cards(tasks.filter((task) => task.chapter === chapter))));
+    }
+  }
+
+  private cards(tasks: TaskInfo[]): HTMLElement {
+    const cards = h("ul", { class: "cards" });
+    for (const task of tasks) {
       const button = h("button", { class: "card", "data-task": task.name, onclick: () => this.open(task) },
         taskPicture(task.picture, task.title), h("span", { class: "cardtitle" }, task.title), h("span", { class: "summary" }, task.summary),
         task.demonstration ? h("span", { class: "tag" }, "demonstration only") : null);
-      this.cards.append(h("li", {}, button));
+      cards.append(h("li", {}, button));
     }
+    return cards;
   }
 
   /// The list is a convenience here; where it cannot be had the sessions page says why.
