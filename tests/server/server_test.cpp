@@ -75,7 +75,7 @@ class ServerTest : public testing::Test {
     ServerOptions options;
     options.port = 0;
     options.viewer_folder = folder_ / "dist";
-    options.hello = {"0.1.0", {{"knot-square", "Square knot", "Tie it.", false}}, {}, {"pointer", "demo"}};
+    options.hello = {"0.1.0", {{"knot-square", "Square knot", "Tie it.", "Knots", false}}, {}, {"pointer", "demo"}};
     server_ = std::make_unique<Server>(options, host_);
     server_->start();
   }
