@@ -84,7 +84,12 @@ std::unique_ptr<Ranks> start_ranks(const Streams& io) {
   std::string why;
   const auto start = reinterpret_cast<StartRanks>(reconcile::module_function("filum_ranks", kStartRanks, &why));
   if (start == nullptr && !why.empty()) std::fprintf(io.err, "without MPI: %s\n", why.c_str());
-  return std::unique_ptr<Ranks>(start == nullptr ? nullptr : start());
+  std::unique_ptr<Ranks> ranks(start == nullptr ? nullptr : start());
+  if (ranks != nullptr && static_cast<std::size_t>(ranks->size()) != rank_and_size().second) {  // srun without the library's own start: each sees itself alone
+    std::fprintf(io.err, "without MPI: it sees %d of %zu processes; each takes its share by number\n", ranks->size(), rank_and_size().second);
+    ranks.reset();
+  }
+  return ranks;
 }
 
 /// Datasets of the folder that have no report yet, one name a line.

@@ -168,6 +168,7 @@ std::vector<double> Cantilever::guess() const {
     s.base = &E;
     double sum = 0.0;
     for (const Trial& t : data().trials) {
+      if (t.hold_out) continue;
       Trial few = t;
       const Eigen::Index step = std::max<Eigen::Index>(1, t.samples() / 20);
       std::vector<Eigen::Index> keep;

@@ -24,7 +24,7 @@ class Capstan final : public RigModel {
   std::vector<double> guess() const override {
     double up = 0.0, down = 0.0;
     for (const Trial& t : data().trials)
-      for (Eigen::Index n = 0; n < t.time.size(); ++n) {
+      for (Eigen::Index n = 0; n < t.time.size() && !t.hold_out; ++n) {
         const double y = t.at("pull_force")[n], h = t.at("hold_force")[n], a = t.at("wrap_angle")[n];
         if (std::isfinite(y) && y > 0.1 * h && h > 0) up += a * std::log(y / h), down += a * a;
       }

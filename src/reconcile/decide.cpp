@@ -431,7 +431,8 @@ std::vector<Screened> screened(const Search& search, const Result& r) {
     if (f.line) s.gain = s.masked = NAN;  // of free phase: tested in the spectrum
     if (fitted(f.effect)) s.what = "fitted";
     else if (std::none_of(r.forms.begin(), r.forms.end(), [&](const Form& g) { return g.effect == f.effect; })) s.what = "these trials could not show it";
-    else if (f.line) std::snprintf(text, sizeof text, "not fitted: a line as strong comes by chance in %.2g of the cases", search.line_p(f, search.base())), s.what = text;
+    else if (f.line && search.line_p(f, search.base()) > r.rules.detect_p) std::snprintf(text, sizeof text, "not fitted: a line as strong comes by chance in %.2g of the cases", search.line_p(f, search.base())), s.what = text;
+    else if (f.line) s.what = "not fitted: it stands out, but others promise far more";
     else if (at == scores.end() || at->gain < r.rules.screen_least) std::snprintf(text, sizeof text, "not fitted: promises less than %.3g", r.rules.screen_least), s.what = text;
     else if (at->gain < r.rules.screen_share * top) std::snprintf(text, sizeof text, "not fitted: less than %.2g of the best promise", r.rules.screen_share), s.what = text;
     else s.what = "not fitted: promised too little before the noise was known";

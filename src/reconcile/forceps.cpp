@@ -148,7 +148,7 @@ class Forceps final : public RigModel {
     if (!has(output)) return;
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
     for (const Trial& t : data().trials)
-      for (Eigen::Index i = 0; i < t.time.size(); ++i) {
+      for (Eigen::Index i = 0; i < t.time.size() && !t.hold_out; ++i) {
         const double x = t.at(input)[i], y = t.at(output)[i];
         if (std::isfinite(y)) n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
       }

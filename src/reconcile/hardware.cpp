@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/error.h"
+#include "base/units.h"
 #include "reconcile/model.h"
 #include "reconcile/result.h"
 
@@ -77,6 +79,31 @@ std::vector<HardwareCheck> check_hardware(const Dataset& d) {
   return out;
 }
 
+namespace {
+
+/// The record's own speed [input/s] against the rate that its protocol states: a slip in the unit of time shows nowhere else.
+void check_rate(const Dataset& d, const Trial& t, std::vector<HardwareCheck>& out) {
+  const char* input = d.rig == Rig::tissue_block ? "displacement" : d.rig == Rig::spatula_press ? "depth" : d.rig == Rig::vessel_inflation ? "pressure" : nullptr;
+  if (input == nullptr || !t.has(input) || !t.clocked || t.word("rate").empty()) return;
+  const char* unit = d.rig == Rig::vessel_inflation ? "Pa/s" : "m/s";
+  double stated = 0.0;
+  try {
+    stated = std::abs(parse_quantity(t.word("rate"), unit));
+  } catch (const InputError&) {
+    return;  // free text: a strain rate, a word
+  }
+  const Eigen::VectorXd& u = t.at(input);
+  const Eigen::Index w = std::max<Eigen::Index>(1, u.size() / 50);
+  double fastest = 0.0;
+  for (Eigen::Index n = 0; n + w < u.size(); ++n)
+    if (const double v = std::abs(u[n + w] - u[n]) / (t.time[n + w] - t.time[n]); std::isfinite(v)) fastest = std::max(fastest, v);
+  constexpr double kWrong = 50.0;
+  if (stated > 0.0 && (fastest > kWrong * stated || fastest < stated / kWrong))
+    out.push_back({"unit", t.file + ", rate", text("%s moves at %.3g %s at most, its protocol says %s: is the unit of time, or of the input, wrong by 1000?", input, fastest, unit, t.word("rate").c_str())});
+}
+
+}  // namespace
+
 std::vector<HardwareCheck> check_units(const Dataset& d, const std::vector<Estimate>& baseline) {
   std::vector<HardwareCheck> out;
   for (const Estimate& e : baseline) {
@@ -101,6 +128,7 @@ std::vector<HardwareCheck> check_units(const Dataset& d, const std::vector<Estim
   const auto largest = [](const std::vector<double>& v) { return std::max(std::abs(*std::min_element(v.begin(), v.end())), std::abs(*std::max_element(v.begin(), v.end()))); };
   const auto spread = [](const std::vector<double>& v) { return *std::max_element(v.begin(), v.end()) - *std::min_element(v.begin(), v.end()); };
   for (const Trial& t : d.trials) {
+    check_rate(d, t, out);
     if (d.rig == Rig::vessel_inflation) look(t, "outer_diameter", 0.2 * t.size("outer_diameter"), 5.0 * t.size("outer_diameter"), "usually", typical);
     if (d.rig == Rig::suture_pull || d.rig == Rig::needle_insertion) look(t, "speed", 2e-6, 1.0, "at most", largest);
     if (d.rig == Rig::forceps_bridge) look(t, "angle", 0.02, 3.2, "at most", largest);

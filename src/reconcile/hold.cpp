@@ -3,92 +3,20 @@
 // values of mean q times the white level, 2 log L rises by 2 N (q - 1 - log q). A line has all of it in one bin, tremor has a band.
 
 #include <Eigen/Dense>
-#include <unsupported/Eigen/FFT>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/rng.h"
+#include "reconcile/hold_spectrum.h"
 #include "reconcile/search.h"
 
 namespace filum::reconcile {
 namespace {
 
 constexpr HoldRules kRules;
-
-struct Spectrum {
-  std::vector<double> frequency, power;  // [Hz], periodogram over the white level: mean 1
-  double sigma = 1.0;                    // [m]
-  double step = 1.0;
-  int n = 0;
-  double rate = 1.0;                     // [Hz], of the samples
-};
-
-/// Of one record and output, residual of the polynomial. sigma <= 0: taken from the median of the bins above 1.5 Hz outside the tremor band.
-Spectrum spectrum(const Eigen::VectorXd& residual, const Eigen::VectorXd& time, double sigma) {
-  Spectrum s;
-  std::vector<double> x;
-  for (const double v : residual) x.push_back(std::isfinite(v) ? v : 0.0);
-  const auto n = x.size();
-  s.n = static_cast<int>(n);
-  const double span = (time[time.size() - 1] - time[0]) * static_cast<double>(n) / static_cast<double>(n - 1);
-  s.step = 1.0 / span;
-  s.rate = static_cast<double>(n) / span;
-  Eigen::FFT<double> fft;
-  std::vector<std::complex<double>> out;
-  fft.fwd(out, x);
-  std::vector<double> quiet;
-  for (std::size_t k = 1; k < n / 2; ++k) {
-    s.frequency.push_back(static_cast<double>(k) / span);
-    s.power.push_back(std::norm(out[k]) / static_cast<double>(n));
-    const double f = s.frequency.back();
-    if (f > 1.5 && (f < 6.0 || f > 14.0)) quiet.push_back(s.power.back());
-  }
-  if (quiet.size() < 8) quiet = s.power;
-  const double median_level = median(quiet) / std::log(2.0);
-  s.sigma = sigma > 0 ? sigma : std::sqrt(median_level);
-  for (double& p : s.power) p /= s.sigma * s.sigma;
-  return s;
-}
-
-struct Band {
-  double low = 0, high = 0, mean = 1, background = 1, evidence = 0, centre = 0, top_share = 0, excess = 0;
-  int bins = 0;
-};
-
-/// Power between two frequencies over all spectra, against `background`.
-Band band(const std::vector<Spectrum>& all, double low, double high, double background) {
-  Band b{low, high, 0, background, 0, 0, 0, 0, 0};
-  double weighted = 0.0, top = 0.0;
-  for (const Spectrum& s : all) {
-    double most = 0.0;
-    for (std::size_t k = 0; k < s.power.size(); ++k)
-      if (s.frequency[k] >= low && s.frequency[k] <= high) {
-        b.mean += s.power[k];
-        weighted += s.power[k] * s.frequency[k];
-        most = std::max(most, s.power[k]);
-        ++b.bins;
-      }
-    top += most;
-  }
-  if (b.bins == 0) return b;
-  b.centre = weighted / b.mean;
-  b.top_share = top / b.mean;
-  b.mean /= b.bins;
-  const double q = b.mean / background;
-  b.excess = (b.mean - background) * b.bins;
-  b.evidence = q > 1.0 ? 2.0 * b.bins * (q - 1.0 - std::log(q)) : 0.0;
-  return b;
-}
-
-double level(const std::vector<Spectrum>& all, double low, double high) {
-  std::vector<double> p;
-  for (const Spectrum& s : all)
-    for (std::size_t k = 0; k < s.power.size(); ++k)
-      if (s.frequency[k] >= low && s.frequency[k] <= high) p.push_back(s.power[k]);
-  return p.empty() ? 1.0 : median(p) / std::log(2.0);
-}
 
 /// The band between 7.5 and 12.5 Hz that stands out most.
 Band tremor_band(const std::vector<Spectrum>& all) {
@@ -108,18 +36,6 @@ struct Found {
   double low, high, frequency, power, evidence;  // power: squared rms [m2] of one record and output
   int bins;
 };
-
-/// Squared rms in [m2] that a band holds above its background.
-double squared_rms(const std::vector<Spectrum>& all, double low, double high, double background) {
-  double sum = 0.0;
-  for (const Spectrum& s : all) {
-    double p = 0.0;
-    for (std::size_t k = 0; k < s.power.size(); ++k)
-      if (s.frequency[k] >= low && s.frequency[k] <= high) p += (s.power[k] - background) * s.sigma * s.sigma;
-    sum += 2.0 * p / s.n;
-  }
-  return std::max(0.0, sum / static_cast<double>(all.size()));
-}
 
 void add_line(const Fitter& fitter, const Fit& base, const Form& form, double low, double high, const std::vector<Spectrum>& all, std::vector<Found>& found) {
   const Line line = strongest_line(fitter, base, low, high);
@@ -333,14 +249,22 @@ std::vector<NotTestable> hold_lint(const Dataset& d) {
   return out;
 }
 
-/// A top that many samples share is a clipped one.
-bool clipped(const Eigen::VectorXd& y) {
+/// The limit of a record whose top or bottom many samples share, within half the step to the next value.
+std::optional<Estimate> clipped_at(const Eigen::VectorXd& y) {
   std::map<double, int> counts;
   for (const double v : y)
     if (std::isfinite(v)) ++counts[v];
-  if (counts.size() < 12) return false;
-  const auto edge = [&](int first, int second) { return first >= kRules.clipped_least && first > kRules.clipped_share * static_cast<double>(y.size()) && first > kRules.clipped_times * std::max(1, second); };
-  return edge(counts.rbegin()->second, std::next(counts.rbegin())->second) || edge(counts.begin()->second, std::next(counts.begin())->second);
+  if (counts.size() < 12) return std::nullopt;
+  const auto edge = [&](const auto& first, const auto& second) {
+    return first.second >= kRules.clipped_least && first.second > kRules.clipped_share * static_cast<double>(y.size()) && first.second > kRules.clipped_times * std::max(1, second.second);
+  };
+  const auto limit = [](const auto& first, const auto& second) {
+    const double half = 0.5 * std::abs(first.first - second.first);
+    return Estimate{"limit", "m", first.first, first.first - half, first.first + half};
+  };
+  if (edge(*counts.rbegin(), *std::next(counts.rbegin()))) return limit(*counts.rbegin(), *std::next(counts.rbegin()));
+  if (edge(*counts.begin(), *std::next(counts.begin()))) return limit(*counts.begin(), *std::next(counts.begin()));
+  return std::nullopt;
 }
 
 /// Share of 30 resamplings of the records (with their outputs together) in which the same octave has most power left.
@@ -393,7 +317,12 @@ double closing_frequency(const std::vector<Spectrum>& all, const Band& b) {
 }  // namespace
 
 Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& options) {
+  const auto say = [&](const char* stage, double share) {
+    stop_if_cancelled(options);
+    if (options.progress) options.progress(stage, share);
+  };
   Result r;
+  say("baseline", 0.0);
   r.rules = options.rules;
   r.forms = model.all_forms();
   r.not_testable = hold_lint(d);
@@ -408,7 +337,8 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   Fit base = fitter.fit({}, {}, {});
   for (std::size_t c = 0; c < stated.size(); ++c) {
     std::vector<double> levels;
-    for (std::size_t i = 0; i < d.trials.size(); ++i) levels.push_back(spectrum(base.residual[i][c], d.trials[i].time, 0.0).sigma);
+    for (std::size_t i = 0; i < d.trials.size(); ++i)
+      if (!d.trials[i].hold_out) levels.push_back(spectrum(base.residual[i][c], d.trials[i].time, 0.0).sigma);
     if (stated[c] <= 0 || median(levels) > stated[c]) noise.output[c].sigma = median(levels);
     stated[c] = noise.output[c].sigma;
   }
@@ -418,6 +348,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   for (std::size_t i = 0; i < d.trials.size(); ++i)
     if (d.trials[i].hold_out) fitted.residual[i].clear();
   std::vector<Found> found;
+  say("lines and bands", 0.1);
   const bool fast = all[0].frequency.back() > 12.0;
   const Band t = tremor_band(all);
   for (const Form& f : r.forms)
@@ -429,23 +360,24 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   const bool alias = std::any_of(found.begin(), found.end(), [&](const Found& f) { return f.effect == Effect::mains_hum && f.low < t.high && f.high > t.low; });
   if (fast && !alias && t.evidence > kRules.tremor_gain && t.mean > kRules.tremor_power * t.background && t.top_share < kRules.tremor_top && t.centre > kRules.tremor_low && t.centre < kRules.tremor_high)
     found.push_back({Effect::physiological_tremor, nullptr, t.low - 0.6, t.high + 0.6, closing_frequency(all, t), tremor_power(spectra(model, without_lines(d, fitted, found), stated, false), t), t.evidence, t.bins});
-  for (std::size_t c = 0; c < d.outputs.size(); ++c)
+  for (const std::string& output : d.outputs)
     for (const Trial& trial : d.trials)
-      if (clipped(trial.at(d.outputs[c])) && r.effects.empty())
-        r.effects.push_back({Effect::saturation, "clipped", {{"limit", "m", trial.at(d.outputs[c]).maxCoeff(), trial.at(d.outputs[c]).maxCoeff(), trial.at(d.outputs[c]).maxCoeff()}}});
+      if (const auto limit = trial.hold_out || !r.effects.empty() ? std::nullopt : clipped_at(trial.at(output))) r.effects.push_back({Effect::saturation, "clipped", {*limit}});
+  say("amplitudes", 0.5);
   for (Found& f : found) {
     Tried tried{{f.effect}, "", -f.evidence, 1.0, true, "taken"};
     if (std::none_of(r.effects.begin(), r.effects.end(), [&](const NamedEffect& e) { return e.effect == f.effect; })) {
       std::vector<Found> others;
       for (const Found& o : found)
         if (o.effect != f.effect) others.push_back(o);
-      const Estimate line = f.form == nullptr ? Estimate{} : line_amplitude(d, without_lines(d, base, others), noise, f.frequency);
+      const Estimate line = f.form == nullptr ? Estimate{} : line_amplitude(d, without_lines(d, fitted, others), noise, f.frequency);
       r.effects.push_back(named(f, line));
     }
     r.tried.push_back(tried);
   }
   if (t.evidence > 4.0 && std::none_of(found.begin(), found.end(), [](const Found& f) { return f.effect == Effect::physiological_tremor; }))
     r.tried.push_back({{Effect::physiological_tremor}, "", -t.evidence, 0.0, false, "no band of random phase between 8 and 12 Hz stands out enough"});
+  say("what is left", 0.8);
   const Band left = leftover(spectra(model, without_lines(d, base, found), stated, false), found);
   const double detrended = std::sqrt(squared_rms(all, left.low, left.high, 1.0));
   const bool unexplained = left.evidence > kRules.left_gain && left.mean > kRules.left_power && detrended > r.rules.materiality * model.full_scale(d.outputs[0]);
@@ -453,7 +385,8 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   r.held_out = held.empty() ? r.fit : gap_in(held, found);
   r.held_out_how = held.empty() ? "no trial is held out: the same bands on the fitted ones" : "trials marked hold_out";
   r.noise = noise;
-  r.before = r.after = base;
+  r.before = base;
+  r.after = without_lines(d, base, found);  // a band of random phase has no curve: it stays in what is left
   r.partial = !r.effects.empty() && unexplained;
   r.structure_before = left.evidence;
   const double share = [&] {
@@ -470,12 +403,15 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     r.effects.clear();
     r.partial = false;
     r.verdict = "unknown";
-    char text[160];
-    std::snprintf(text, sizeof text, "Between %.2g and %.2g Hz there is %.1f times the noise's power that no effect of the catalogue explains.", left.low, left.high, left.mean);
+    char text[300];
+    std::snprintf(text, sizeof text, "Between %.2g and %.2g Hz there is %.1f times the noise's power that no effect of the catalogue explains. A line or a band of the catalogue with %.0f %% of all power named would change this.",
+                  left.low, left.high, left.mean, 100 * kRules.named_share);
     r.sentence = text;
   } else {
     r.verdict = "agree";
-    r.sentence = "A still tip, a slow drift and white noise explain the records.";
+    char text[240];
+    std::snprintf(text, sizeof text, "A still tip, a slow drift and white noise explain the records. A band or a line with %.1f times the noise's power over an octave, in these or in longer records, would change this.", kRules.left_power);
+    r.sentence = text;
   }
   if (r.verdict == "effect")
     for (const Found& f : found) add_cells(d, all, f.low, f.high, level(all, std::max(0.05, f.low - 3.0), f.high + 3.0), r.where);

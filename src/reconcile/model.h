@@ -140,7 +140,7 @@ class RigModel {
   /// Columns whose amplitudes are free in every record and output: polynomial and lines. samples x columns.
   Eigen::MatrixXd free_columns(const Trial& t, const Setting& s) const;
 
-  /// Largest minus smallest value of an output over all trials.
+  /// Largest minus smallest value of an output over the trials that are not held out.
   double full_scale(const std::string& output) const;
   double session_start() const;  // [s]
 

@@ -22,7 +22,7 @@ class Needle final : public RigModel {
     std::vector<int> counts;
     for (const Trial& t : d.trials) {
       events_.push_back(find(t));
-      counts.push_back(static_cast<int>(events_.back().drops.size()));
+      if (!t.hold_out) counts.push_back(static_cast<int>(events_.back().drops.size()));
       deepest_ = std::max(deepest_, t.at("depth").maxCoeff());
       if (t.has("speed")) fastest_ = std::max(fastest_, t.at("speed").cwiseAbs().maxCoeff());
     }
@@ -31,7 +31,7 @@ class Needle final : public RigModel {
     for (int j = 0; j < layers_; ++j) {
       std::vector<double> depths;
       for (std::size_t i = 0; i < d.trials.size(); ++i)
-        if (static_cast<int>(events_[i].drops.size()) > j) depths.push_back(d.trials[i].at("depth")[events_[i].drops[static_cast<std::size_t>(j)]]);
+        if (!d.trials[i].hold_out && static_cast<int>(events_[i].drops.size()) > j) depths.push_back(d.trials[i].at("depth")[events_[i].drops[static_cast<std::size_t>(j)]]);
       depth_.push_back(median(depths));
     }
   }
@@ -40,7 +40,7 @@ class Needle final : public RigModel {
     double up = 0.0, down = 0.0;
     for (std::size_t i = 0; i < data().trials.size(); ++i) {
       const Trial& t = data().trials[i];
-      for (int n = 0; n < t.samples() && !punctured(i, n); ++n) {
+      for (int n = 0; n < t.samples() && !t.hold_out && !punctured(i, n); ++n) {
         const double x = t.at("depth")[n], y = t.at("force")[n];
         if (x > 0 && std::isfinite(y)) up += x * y, down += x * x;
       }

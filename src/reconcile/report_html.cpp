@@ -1,7 +1,10 @@
+#include <Eigen/Dense>
+#include <unsupported/Eigen/FFT>
+
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <cstdio>
-#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -243,6 +246,23 @@ void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
   s << "</table><p>Evidence: fall of the Bayesian information criterion against the baseline; a difference below " << number(r.rules.tie) << " is a tie.</p>\n";
 }
 
+/// Frequencies [Hz] up to half the sampling rate and log10 of the periodogram there; of many, each point is the strongest of its neighbours, so that no line is lost.
+std::pair<Eigen::VectorXd, Eigen::VectorXd> spectrum_of(const Eigen::VectorXd& v, double span) {
+  constexpr Eigen::Index kPoints = 400;
+  std::vector<double> x;
+  for (const double one : v) x.push_back(std::isfinite(one) ? one : 0.0);
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> out;
+  fft.fwd(out, x);
+  const Eigen::Index all = std::max<Eigen::Index>(1, v.size() / 2 - 1), each = (all + kPoints - 1) / kPoints, points = (all + each - 1) / each;
+  Eigen::VectorXd f(points), p = Eigen::VectorXd::Constant(points, 1e-300);
+  for (Eigen::Index k = 0; k < all; ++k) {
+    const double power = std::norm(out[static_cast<std::size_t>(k + 1)]) / static_cast<double>(v.size());
+    if (k % each == 0 || power > p[k / each]) p[k / each] = std::max(power, 1e-300), f[k / each] = static_cast<double>(k + 1) / span;
+  }
+  return {f, p.array().log10()};
+}
+
 void residual_after(const Dataset& d, const Result& r, std::ostringstream& s) {
   // the output and record of which most is left
   double most = -1.0;
@@ -268,20 +288,7 @@ void residual_after(const Dataset& d, const Result& r, std::ostringstream& s) {
     };
     const double zero = product(0);
     for (Eigen::Index k = 0; k < lags; ++k) x[k] = static_cast<double>(k), a[k] = zero > 0 ? product(k) / zero : 0.0;
-    const Eigen::Index bins = std::min<Eigen::Index>(200, v.size() / 2 - 1);
-    Eigen::VectorXd f(bins), p(bins);
-    const double span = d.trials[i].time[v.size() - 1] - d.trials[i].time[0];
-    for (Eigen::Index k = 0; k < bins; ++k) {
-      double re = 0, im = 0;
-      for (Eigen::Index n = 0; n < v.size(); ++n) {
-        if (!std::isfinite(v[n])) continue;
-        const double phase = 2 * std::numbers::pi * static_cast<double>((k + 1) * n) / static_cast<double>(v.size());
-        re += v[n] * std::cos(phase);
-        im += v[n] * std::sin(phase);
-      }
-      f[k] = static_cast<double>(k + 1) / span;
-      p[k] = std::log10(std::max((re * re + im * im) / static_cast<double>(v.size()), 1e-300));
-    }
+    const auto [f, p] = spectrum_of(v, d.trials[i].time[v.size() - 1] - d.trials[i].time[0]);
     s << "<h2>What is left afterwards</h2><p>Of the record of which most is left: " << number(std::sqrt(most), 3) << " standard deviations of the noise.</p><div class='plots'>" << plot({"autocorrelation, " + d.trials[i].file + ", " + d.outputs[output], "lag [samples]", "correlation"}, {{x, a, "#444", false, {}}})
       << plot({"spectrum, " + d.trials[i].file + ", " + d.outputs[output], "frequency [Hz]", "log10 power"}, {{f, p, "#444", false, {}}}) << "</div>\n";
   }

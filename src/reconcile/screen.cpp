@@ -75,6 +75,7 @@ Score Screen::score(const Form& form, const std::vector<double>& start) const {
   Score out{&form, start, 0.0, 0.0, 0.0, 1.0, 1.0};
   const Signature s = signature(form, start);
   out.seen = std::max(0.0, inner(s, s));
+  if (s.norm <= 0.0) out.imitated = 0.0;  // there is nothing to imitate
   if (s.norm <= 0.0 || out.seen <= 1e-9 * s.norm) return out;
   out.masked = 1.0 - out.seen / s.norm;
   Eigen::VectorXd g = Eigen::VectorXd::Zero(common_.rows());
@@ -207,6 +208,7 @@ Reason clock_condition(const Dataset& d, Effect e) {
 /// Reasons that follow from the clearest signature an effect could leave in these records; `seen`: its squared signal to noise.
 Reason signature_condition(const Score* clearest, double seen, double masked, double testable) {
   if (clearest == nullptr) return {"these trials never bring it about"};
+  if (clearest->seen <= 0.0 && clearest->imitated <= 0.0) return {"these trials never bring it about", true};
   if (clearest->imitated > masked) return {"a change of the baseline's own parameters imitates it (masked to " + std::to_string(static_cast<int>(std::floor(1000 * clearest->imitated)) / 10) + " %)", true};
   if (seen < testable) return {"even a strong effect would change these records by less than their noise", true};
   return {};

@@ -147,9 +147,11 @@ Eigen::MatrixXd RigModel::free_columns(const Trial& t, const Setting& s) const {
 
 double RigModel::full_scale(const std::string& output) const {
   std::vector<double> all;
-  for (const Trial& t : data_.trials)
+  for (const Trial& t : data_.trials) {
+    if (t.hold_out) continue;
     for (const double v : t.at(output))
       if (std::isfinite(v)) all.push_back(v);
+  }
   std::sort(all.begin(), all.end());
   // quantiles, so that noise and single spikes do not set the scale
   const auto at = [&](double q) { return all[static_cast<std::size_t>(q * static_cast<double>(all.size() - 1))]; };
@@ -197,9 +199,11 @@ std::vector<Form> RigModel::sensor_forms() const {
                      {{"rate", si, -fs, fs, false}, {"start", "s", 0.03 * dt, 10 * span, true}}, {{0.02 * fs, 0.03 * span}}, false});
     }
     double low = 1e300, high = -1e300;
-    for (const Trial& t : d.trials)
+    for (const Trial& t : d.trials) {
+      if (t.hold_out) continue;
       for (const double v : t.at(name))
         if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    }
     const double peak = std::max(std::abs(low), std::abs(high));
     if (low < 0) out.push_back({Effect::saturation, 3 * at, name + ": clipped on both sides", {{"limit", si, 0.2 * peak, 1.3 * peak, false}}, {{0.98 * peak}, {0.9 * peak}, {0.75 * peak}, {0.55 * peak}}, false});
     // a limit of nothing is no limit of a sensor

@@ -298,7 +298,7 @@ std::vector<double> Tissue::guess() const {
   const Dataset& d = data();
   for (const Trial& t : d.trials) {
     const Geometry g = geometry_of(d, t);
-    if (g.mode == Mode::shear) continue;
+    if (g.mode == Mode::shear || t.hold_out) continue;
     const double nu = d.nominal.at("poissons_ratio"), share = g.mode == Mode::press ? 1.0 / (1.0 - nu * nu) : 1.0;
     const Eigen::VectorXd &u = t.at(input_), &f = t.at(d.outputs[0]);
     for (Eigen::Index n = 0; n < u.size(); ++n) {

@@ -49,7 +49,7 @@ class Vessel final : public RigModel {
       largest_ = std::max(largest_, t.at("pressure").cwiseAbs().maxCoeff());
       const Eigen::VectorXd& D = t.at("outer_diameter");
       for (const double v : D)
-        if (std::isfinite(v)) strain_ = std::max(strain_, std::abs(v / t.size("outer_diameter") - 1.0));
+        if (std::isfinite(v) && !t.hold_out) strain_ = std::max(strain_, std::abs(v / t.size("outer_diameter") - 1.0));
       b_ = 0.5 * t.size("outer_diameter");
       a_ = b_ - t.size("wall_thickness");
     }
@@ -263,6 +263,7 @@ void Vessel::rig(const Trial& t, const Setting& s, Eigen::MatrixXd& out) const {
 std::vector<double> Vessel::guess() const {
   double pu = 0.0, pp = 0.0;
   for (const Trial& t : data().trials) {
+    if (t.hold_out) continue;
     const double b = 0.5 * t.size("outer_diameter"), a = b - t.size("wall_thickness"), lame = 1.0 / (a * a) - 1.0 / (b * b);
     for (Eigen::Index n = 0; n < t.time.size(); ++n) {
       const double lz = t.has("axial_stretch") ? t.at("axial_stretch")[n] : 1.0;

@@ -97,6 +97,31 @@ TEST(Hardware, NoticesAUnitThatIsWrongByAThousand) {
     for (const double times : {1e-3, 1.0, 1e3}) EXPECT_EQ(check_units(rig(v.rig, v.channel, times * v.usual), {}).size(), times == 1.0 ? 0u : 1u) << v.channel << times;
 }
 
+TEST(Hardware, NoticesATimeThatIsWrongByAThousand) {
+  struct Input {
+    Rig rig;
+    const char *channel, *rate;
+    double speed;
+  };
+  for (const Input& v : {Input{Rig::tissue_block, "displacement", "2 mm/s", 2e-3}, {Rig::spatula_press, "depth", "0.5 mm/s", 5e-4}, {Rig::vessel_inflation, "pressure", "800 Pa/s", 800.0}, {Rig::tissue_block, "displacement", "0.1 1/s", 2e-3}})
+    for (const double times : {1e-3, 1.0, 1e3}) {
+      Dataset d;
+      d.rig = v.rig;
+      Trial t;
+      t.file = "a.csv";
+      t.clocked = true;
+      t.protocol["rate"] = v.rate;
+      t.time = Eigen::VectorXd::LinSpaced(200, 0.0, 10.0 * times);
+      t.data[v.channel] = (v.speed / times * t.time.array()).min(5.0 * v.speed);  // up, then held
+      if (v.rig == Rig::vessel_inflation) t.data["outer_diameter"] = Eigen::VectorXd::Constant(200, 1e-3), t.specimen["outer_diameter"] = 1e-3;
+      d.trials = {t};
+      const auto said = check_units(d, {});
+      const bool wrong = times != 1.0 && std::string(v.rate) != "0.1 1/s";
+      ASSERT_EQ(said.size(), wrong ? 1u : 0u) << v.rate << times;
+      for (const HardwareCheck& h : said) EXPECT_NE(h.found.find("is the unit of time, or of the input, wrong by 1000?"), std::string::npos) << h.found;
+    }
+}
+
 TEST(Hardware, SaysSizesInTheChannelsOwnUnit) {
   Dataset d = rig(Rig::tip_hold, "x", 0.3);
   d.channels[0].unit = "mm", d.channels[0].scale = 1e-3;

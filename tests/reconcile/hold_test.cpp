@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <functional>
 #include <numbers>
 
 #include "base/rng.h"
@@ -11,25 +13,32 @@
 namespace filum::reconcile {
 namespace {
 
-/// Four records of 25 s in um with 4 um of white noise; `signal` gives what is added to (time, random).
-Result held(double rate, std::uint64_t seed, const std::function<std::function<double(double)>(Rng&)>& signal) {
+using Signal = std::function<std::function<double(double)>(Rng&)>;
+
+/// What becomes of a sample [um] of the last record, which is held out then.
+using Altered = std::function<double(double)>;
+
+/// Four records of 25 s in um with 4 um of white noise; `signal` gives what is added to (time, random). Samples end at `floor`.
+Result held(double rate, std::uint64_t seed, const Signal& signal, const Altered& altered = {}, double floor = -1e9, const Options& options = {}) {
   Folder f;
   std::string trials;
   Rng rng(seed);
   for (const char* name : {"a.csv", "b.csv", "c.csv", "d.csv"}) {
-    trials += std::string("  - { file: ") + name + ", protocol: { support: free } }\n";
+    const bool out = altered && std::string(name) == "d.csv";
+    trials += std::string("  - { file: ") + name + ", protocol: { support: free }" + (out ? ", hold_out: true" : "") + " }\n";
     const auto add = signal(rng);
     std::ostringstream s;
     s << "t,x\n";
     for (int i = 0; i < static_cast<int>(25.0 * rate); ++i) {
       const double t = i / rate, u = t / 25.0;
-      s << t << "," << 40.0 * u - 25.0 * u * u * u + 4.0 * rng.normal() + add(t) << "\n";
+      const double x = std::max(floor, 40.0 * u - 25.0 * u * u * u + 4.0 * rng.normal() + add(t));
+      s << t << "," << (out ? altered(x) : x) << "\n";
     }
     f.write(name, s.str());
   }
   f.write("experiment.yaml", "format: filum-experiment/1\ntitle: hand\nsource: test\nrig: tip-hold\nspecimen: { sensor: optical }\nmodel:\n  file: hand/still\n  free: []\n"
                              "channels:\n  - { name: time, column: t, unit: s }\n  - { name: x, column: x, unit: um, kind: output, noise: \"4 um\" }\ntrials:\n" + trials);
-  return reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
+  return reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR), options);
 }
 
 const Estimate& value(const Result& r, const std::string& name) {
@@ -125,6 +134,52 @@ TEST(Hold, BreathIsNotHumFoldedByTheSampling) {
   ASSERT_EQ(r.verdict, "effect") << r.sentence;
   ASSERT_EQ(r.effects.size(), 1u);
   EXPECT_EQ(r.effects[0].effect, Effect::pulsation);
+}
+
+TEST(Hold, RecordsThatAreHeldOutChooseAndFitNothing) {
+  const Signal hum = [](Rng& rng) { return sine(rng, 50.0, 9.0); };
+  const Result r = held(130.0, 5, hum, [](double x) { return x; }), other = held(130.0, 5, hum, [](double x) { return std::clamp(1.7 * x, -12.0, 12.0); });
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  ASSERT_EQ(r.effects.size(), 1u);
+  ASSERT_EQ(other.effects.size(), 1u) << "clipped where nobody may look";
+  EXPECT_EQ(r.sentence, other.sentence);
+  EXPECT_EQ(value(r, "amplitude").value, value(other, "amplitude").value);
+  EXPECT_EQ(value(r, "amplitude").high, value(other, "amplitude").high);
+  EXPECT_EQ(r.noise.output[0].sigma, other.noise.output[0].sigma);
+  EXPECT_EQ(r.fit.after, other.fit.after);
+  EXPECT_NE(r.held_out.after, other.held_out.after);
+}
+
+TEST(Hold, WhatIsLeftIsWithoutTheLine) {
+  const Result r = held(130.0, 5, [](Rng& rng) { return sine(rng, 50.0, 9.0); });
+  ASSERT_EQ(r.verdict, "effect");
+  const auto rms = [](const Fit& f) { return std::sqrt(f.residual[0][0].squaredNorm() / static_cast<double>(f.residual[0][0].size())); };
+  EXPECT_GT(rms(r.before), 7e-6);
+  EXPECT_NEAR(rms(r.after), 4e-6, 0.2e-6);
+}
+
+TEST(Hold, AClippedBottomHasItsOwnLimit) {
+  const Result r = held(100.0, 9, [](Rng&) { return [](double) { return 0.0; }; }, {}, -2.0);
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  EXPECT_EQ(r.effects[0].effect, Effect::saturation);
+  const Estimate limit = value(r, "limit");
+  EXPECT_NEAR(limit.value, -2e-6, 1e-9);
+  EXPECT_LT(limit.low, limit.value);
+  EXPECT_GT(limit.high, limit.value);
+}
+
+TEST(Hold, ProgressIsToldAndItCanBeCancelled) {
+  const Signal still = [](Rng&) { return [](double) { return 0.0; }; };
+  Options options;
+  std::vector<double> shares;
+  options.progress = [&](const std::string&, double share) { shares.push_back(share); };
+  const Result r = held(100.0, 2, still, {}, -1e9, options);
+  EXPECT_GE(shares.size(), 4u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_EQ(r.verdict, "agree");
+  EXPECT_NE(r.sentence.find("would change this"), std::string::npos) << r.sentence;
+  options.cancelled = [] { return true; };
+  EXPECT_THROW(held(100.0, 2, still, {}, -1e9, options), Cancelled);
 }
 
 }  // namespace

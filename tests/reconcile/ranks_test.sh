@@ -23,6 +23,15 @@ for n in 1 2 4; do
 done
 grep -q "without MPI" "$work"/log-* && fail "the module was not used: $(grep -h 'without MPI' "$work"/log-*)"
 
+# started by srun without MPI's own start each process sees itself alone: they share by number
+for n in 0 1; do
+  env SLURM_PROCID=$n SLURM_NTASKS=2 "$filum" reconcile --all "$work/data" --out "$work/slurm" --repeatable --root "$root" >"$work/slurm-$n" 2>&1 &
+done
+wait
+diff -r "$work/out1" "$work/slurm" >"$work/diff" || fail "by number: $(head -c 400 "$work/diff")"
+shared=$(cat "$work"/slurm-? | grep -c '^[0-9]*/10 block-')
+[ "$shared" = 10 ] || fail "by number $shared datasets were solved instead of 10: $(head -c 600 "$work"/slurm-0)"
+
 # one of two processes is killed after the first reports are there
 all 2 "$work/killed" &
 for _ in $(seq 400); do

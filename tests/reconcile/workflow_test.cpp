@@ -155,6 +155,27 @@ TEST(Workflow, WritesTheReportOfTheContract) {
   EXPECT_EQ(j["rules"].size(), 40u);
 }
 
+TEST(Workflow, RecordsThatAreHeldOutChooseAndFitNothing) {
+  std::vector<Result> two;
+  for (const double times : {1.0, 1.7}) {
+    Folder f;
+    write_block(f, 0.4, 1);
+    std::string trials = kTrials;
+    trials.insert(trials.rfind(" }"), ", hold_out: true");
+    f.write("experiment.yaml", block_yaml(trials));
+    f.write("d.csv", block_csv([&](double, double u, int) { return times * 4.0 * u; }, 8));
+    two.push_back(solve(f));
+  }
+  ASSERT_FALSE(two[0].tried.empty());
+  ASSERT_FALSE(two[1].tried.empty());
+  EXPECT_EQ(two[0].tried[0].effects, two[1].tried[0].effects);
+  EXPECT_EQ(two[0].tried[0].explained, two[1].tried[0].explained);
+  EXPECT_EQ(two[0].noise.output[0].full_scale, two[1].noise.output[0].full_scale);
+  EXPECT_EQ(two[0].baseline_alone[0].value, two[1].baseline_alone[0].value);
+  EXPECT_EQ(two[0].noise.output[0].sigma, two[1].noise.output[0].sigma);
+  EXPECT_NE(two[0].held_out.after, two[1].held_out.after);
+}
+
 TEST(Workflow, ProgressRisesWithTheFits) {
   Folder f;
   write_block(f, 0.4, 2);
