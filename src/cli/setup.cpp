@@ -61,17 +61,22 @@ std::vector<Chapter> load_chapters(const std::string& root, std::vector<std::str
   return chapters_of(course, task_names(root));
 }
 
-std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& problems) {
+std::vector<Task> load_tasks(const std::string& root, const Chapter& chapter, std::vector<std::string>& problems) {
   std::vector<Task> tasks;
-  for (const Chapter& chapter : load_chapters(root, problems)) {
-    for (const std::string& name : chapter.tasks) {
-      try {
-        tasks.push_back(load_task(task_file(root, name)));
-      } catch (const InputError& error) {
-        problems.emplace_back(error.what());
-      }
+  for (const std::string& name : chapter.tasks) {
+    try {
+      tasks.push_back(load_task(task_file(root, name)));
+    } catch (const InputError& error) {
+      problems.emplace_back(error.what());
     }
   }
+  return tasks;
+}
+
+std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& problems) {
+  std::vector<Task> tasks;
+  for (const Chapter& chapter : load_chapters(root, problems))
+    for (Task& task : load_tasks(root, chapter, problems)) tasks.push_back(std::move(task));
   return tasks;
 }
 

@@ -28,6 +28,8 @@ std::vector<std::string> task_names(const std::string& root);
 /// Chapters of the course (curricula/course.yaml) with the tasks that there are; where it cannot be read, one chapter and a problem.
 std::vector<Chapter> load_chapters(const std::string& root, std::vector<std::string>& problems);
 
+/// The tasks of a chapter that can be read; those that cannot are named in `problems`.
+std::vector<Task> load_tasks(const std::string& root, const Chapter& chapter, std::vector<std::string>& problems);
 /// All tasks that can be read, in the order of the course; those that cannot are left out and named in `problems`.
 std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& problems);
 

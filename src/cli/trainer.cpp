@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 
 #include "base/error.h"
 #include "cli/options.h"
@@ -24,17 +23,15 @@ HelloView hello_of(const TrainerOptions& options) {
   HelloView hello;
   hello.version = version();
   bool any_shown = false;
-  std::map<std::string, std::string> chapter_of;
-  for (const Chapter& chapter : load_chapters(options.root, problems))
-    for (const std::string& task : chapter.tasks) chapter_of[task] = chapter.title;
-  problems.clear();  // told again with the tasks
-  for (const Task& task : load_tasks(options.root, problems)) {
-    const bool shown = std::filesystem::exists(demonstration_file(options.root, task.name));
-    any_shown = any_shown || shown;
-    if (task.demonstration_only && !shown) continue;  // there is nothing to do in it
-    hello.tasks.push_back({task.name, task.title, task.description, chapter_of[task.name], task.demonstration_only, task.retraction != nullptr, shown});
+  for (const Chapter& chapter : load_chapters(options.root, problems)) {
+    for (const Task& task : load_tasks(options.root, chapter, problems)) {
+      const bool shown = std::filesystem::exists(demonstration_file(options.root, task.name));
+      any_shown = any_shown || shown;
+      if (task.demonstration_only && !shown) continue;  // there is nothing to do in it
+      hello.tasks.push_back({task.name, task.title, task.description, chapter.title, task.demonstration_only, task.retraction != nullptr, shown});
+    }
   }
-  for (const std::string& problem : problems) std::fprintf(stderr, "filum: task left out: %s\n", problem.c_str());
+  for (const std::string& problem : problems) std::fprintf(stderr, "filum: left out: %s\n", problem.c_str());
   hello.inputs = {"pointer"};
   if (any_shown) hello.inputs.emplace_back("demo");
   if (!options.serial_port.empty() || !options.hands.empty()) hello.inputs.emplace_back("device");

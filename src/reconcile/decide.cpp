@@ -413,35 +413,6 @@ std::string described(const Result& r) {
   return out + (out.empty() ? text + 1 : text);
 }
 
-/// Every effect of the rig by the best of its score tests against the baseline, and what came of it.
-std::vector<Screened> screened(const Search& search, const Result& r) {
-  const RigModel& model = search.fitter().model();
-  const auto scores = Screen(search.fitter(), search.base()).all(r.forms);
-  const double top = scores.empty() ? 0.0 : scores[0].gain;
-  const auto fitted = [&](Effect e) {
-    return std::any_of(search.candidates().begin(), search.candidates().end(), [&](const Fit& f) { return std::any_of(f.forms.begin(), f.forms.end(), [&](const Form* g) { return g->effect == e; }); });
-  };
-  std::vector<Screened> out;
-  for (const Form& f : model.all_forms()) {
-    if (std::any_of(out.begin(), out.end(), [&](const Screened& s) { return s.effect == f.effect; })) continue;
-    Screened s{f.effect, f.text, 0.0, 1.0, ""};
-    char text[120];
-    const auto at = std::find_if(scores.begin(), scores.end(), [&](const Score& x) { return x.form->effect == f.effect; });
-    if (at != scores.end()) s.form = at->form->text, s.gain = at->gain, s.masked = at->masked;
-    if (f.line) s.gain = s.masked = NAN;  // of free phase: tested in the spectrum
-    if (fitted(f.effect)) s.what = "fitted";
-    else if (std::none_of(r.forms.begin(), r.forms.end(), [&](const Form& g) { return g.effect == f.effect; })) s.what = "these trials could not show it";
-    else if (f.line && search.line_p(f, search.base()) > r.rules.detect_p) std::snprintf(text, sizeof text, "not fitted: a line as strong comes by chance in %.2g of the cases", search.line_p(f, search.base())), s.what = text;
-    else if (f.line) s.what = "not fitted: it stands out, but others promise far more";
-    else if (at == scores.end() || at->gain < r.rules.screen_least) std::snprintf(text, sizeof text, "not fitted: promises less than %.3g", r.rules.screen_least), s.what = text;
-    else if (at->gain < r.rules.screen_share * top) std::snprintf(text, sizeof text, "not fitted: less than %.2g of the best promise", r.rules.screen_share), s.what = text;
-    else s.what = "not fitted: promised too little before the noise was known";
-    out.push_back(std::move(s));
-  }
-  std::stable_sort(out.begin(), out.end(), [](const Screened& a, const Screened& b) { return a.gain > b.gain || (!std::isnan(a.gain) && std::isnan(b.gain)); });
-  return out;
-}
-
 void finish(const Search& search, const Fit* winner, Result& r) {
   const Fitter& fitter = search.fitter();
   r.screened = screened(search, r);

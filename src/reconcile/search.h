@@ -70,4 +70,7 @@ class Search {
 /// The baseline's residual against repetitions of the baseline.
 Detection detect(const Search& search, const std::vector<Form>& forms);
 
+/// Every effect of the rig by the best of its score tests against the baseline, and what came of it.
+std::vector<Screened> screened(const Search& search, const Result& r);
+
 }  // namespace filum::reconcile
