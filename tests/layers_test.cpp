@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace layers_test {
 
 namespace fs = std::filesystem;
 
@@ -126,4 +126,4 @@ TEST(Layers, APlantedUpwardIncludeIsFound) {
   EXPECT_TRUE(said("names no folder"));
 }
 
-}  // namespace
+}  // namespace layers_test

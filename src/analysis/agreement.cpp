@@ -2,30 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "analysis/mean.h"
+#include "base/numbers.h"
 #include "base/rng.h"
 
 namespace filum {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kDraws = 2000;
 constexpr std::size_t kLeastForInterval = 5;  // sessions
 
-using Points = std::map<std::string, int>;                     // by item
-using Sessions = std::map<std::string, Points>;                // by session
+using PointsByItem = std::map<std::string, int>;
+using Sessions = std::map<std::string, PointsByItem>;          // by session
 using Raters = std::map<std::string, Sessions>;                // by rater's code
 using Pairs = std::pair<std::vector<double>, std::vector<double>>;
-
-double mean_of(const std::vector<double>& x) {
-  double sum = 0.0;
-  for (const double v : x) sum += v;
-  return sum / static_cast<double>(x.size());
-}
 
 double variance_of(const std::vector<double>& x, double mean) {
   double sum = 0.0;

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+
+#include "analysis/mean.h"
+#include "base/numbers.h"
 
 namespace filum {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTwoSided95 = 1.959963984540054;
-
-double mean_of(const std::vector<double>& x) {
-  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
-}
 
 Correlation none(Correlation c, std::string why) {
   c.r = c.low = c.high = c.rank = c.slope = kNaN;

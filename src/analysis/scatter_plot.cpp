@@ -17,7 +17,7 @@ constexpr std::size_t kMostNames = 14;
 constexpr std::array<const char*, 7> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                  "#E69F00", "#56B4E9", "#000000"};
 
-std::string number(double value) {
+std::string coordinate(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
@@ -61,7 +61,7 @@ std::string text_at(double x, double y, const std::string& anchor, const std::st
 
 std::string caption(const Correlation& c, const std::string& where) {
   if (!c.why.empty()) return where + ": " + c.why;
-  return where + ": r = " + number(c.r) + " [" + number(c.low) + ", " + number(c.high) + "], n = " + std::to_string(c.n);
+  return where + ": r = " + coordinate(c.r) + " [" + coordinate(c.low) + ", " + coordinate(c.high) + "], n = " + std::to_string(c.n);
 }
 
 std::string without_unit(const std::string& label) { return label.substr(0, label.find(" [")); }
@@ -108,12 +108,12 @@ class Panel {
     for (const double t : x_.ticks()) {
       const double at = left_ + kSide * x_.share(t);
       line(at, kTop + kSide, at, kTop + kSide + 4);
-      out += text_at(at, kTop + kSide + 17, "middle", number(std::abs(t) < 1e-9 * x_.step ? 0.0 : t));
+      out += text_at(at, kTop + kSide + 17, "middle", coordinate(std::abs(t) < 1e-9 * x_.step ? 0.0 : t));
     }
     for (const double t : y_.ticks()) {
       const double at = kTop + kSide * (1.0 - y_.share(t));
       line(left_ - 4, at, left_, at);
-      out += text_at(left_ - 7, at + 4, "end", number(std::abs(t) < 1e-9 * y_.step ? 0.0 : t));
+      out += text_at(left_ - 7, at + 4, "end", coordinate(std::abs(t) < 1e-9 * y_.step ? 0.0 : t));
     }
     return out;
   }

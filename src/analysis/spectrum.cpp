@@ -4,9 +4,10 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <unsupported/Eigen/FFT>
+
+#include "base/numbers.h"
 
 namespace filum {
 namespace {
@@ -92,7 +93,6 @@ Interval band_power(const Spectrum& s, double from, double to, double confidence
 }
 
 SpectralPeak peak_between(const Spectrum& s, double from, double to) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   SpectralPeak peak{kNaN, kNaN, kNaN, false};
   std::size_t best = 0;
   for (std::size_t k = 1; k + 1 < s.density.size(); ++k)

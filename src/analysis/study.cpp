@@ -7,12 +7,12 @@
 #include <set>
 
 #include "analysis/noise_floor.h"
+#include "base/numbers.h"
 
 namespace filum {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSettle = 2.0;          // [s], in which an object that was let go comes to rest
 constexpr double kShortestTremor = 2.0;  // [s]
 constexpr std::size_t kFewest = 10;      // readings of the squeeze

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "base/numbers.h"
 #include "training/metrics.h"
 
 namespace filum {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<std::array<double, 2>, 4> kBands = {{{4.0, 6.0}, {6.0, 12.0}, {8.0, 12.0}, {12.0, 20.0}}};
 
 std::vector<double> axis_of(const Points& p, int axis) {

@@ -8,10 +8,10 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <thread>
 
 #include "base/error.h"
+#include "base/numbers.h"
 #include "base/utc_stamp.h"
 #include "cli/options.h"
 #include "devices/calibration_file.h"
@@ -21,8 +21,6 @@
 
 namespace filum {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct CalibrateOptions {
   CommonOptions common;

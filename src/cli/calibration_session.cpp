@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "base/error.h"
+#include "base/numbers.h"
 #include "base/utc_stamp.h"
 #include "devices/serial_forceps.h"
 #include "haptics/haptic_loop.h"
@@ -19,7 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::chrono::milliseconds kSilent{500};
 constexpr std::chrono::seconds kPatience{5};  // for the half second of samples that a reading takes
 

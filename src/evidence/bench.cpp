@@ -2,9 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <numbers>
 #include <thread>
@@ -12,32 +10,15 @@
 #include "base/stage_clock.h"
 #include "evidence/brain_bench.h"
 #include "evidence/name_choice.h"
+#include "evidence/percentile.h"
 #include "evidence/pulled_knot.h"
 #include "evidence/sewn_bench.h"
 #include "evidence/stitch_bench.h"
+#include "evidence/timing.h"
 #include "evidence/vessel_bench.h"
 
 namespace filum {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
-/// [ms] of this thread on a processor: what others on the machine take is not in it.
-double processor_ms() {
-  std::timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
-double percentile(std::vector<double> values, double fraction) {
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1,
-                         static_cast<std::size_t>(fraction * static_cast<double>(values.size())))];
-}
 
 /// Fixed work that depends on the machine alone.
 class Reference {

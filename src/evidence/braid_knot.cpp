@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "base/numbers.h"
 
 namespace filum {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kTail = 0.3;         // [m]
 constexpr double kRadius = 1.6e-3;    // [m]
 constexpr double kMouth = 0.12 * kPi;  // [rad], half the opening of the loop where the braid is

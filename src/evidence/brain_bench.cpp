@@ -3,47 +3,25 @@
 #include "evidence/brain_bench.h"
 
 #include <sys/resource.h>
-#include <time.h>
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "evidence/brain_block.h"
+#include "evidence/percentile.h"
+#include "evidence/timing.h"
 #include "world/cortex.h"
 
 namespace filum {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point begin) { return std::chrono::duration<double, std::milli>(Clock::now() - begin).count(); }
-
-double median(std::vector<double> v) {
-  if (v.empty()) return 0.0;
-  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
-
 double peak_megabytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-/// Of this thread: other programs do not count.
-double processor_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
-double quantile(std::vector<double> v, double share) {
-  std::sort(v.begin(), v.end());
-  return v.empty() ? 0.0 : v[std::min(v.size() - 1, static_cast<std::size_t>(share * static_cast<double>(v.size())))];
 }
 
 FemOptions run_time(double dt) {
@@ -143,8 +121,8 @@ void bench_block(BenchResult& r, const StepTimer& timer, TetMesh mesh, double bl
               {"iterations (number, p50)", median(iterations)},
               {"iterations (number, most)", *std::max_element(iterations.begin(), iterations.end())},
               {"residual (relative, largest)", *std::max_element(residual.begin(), residual.end())},
-              {"processor time, p50", quantile(processor, 0.5)},
-              {"processor time, p99", quantile(processor, 0.99)},
+              {"processor time, p50", percentile(processor, 0.5)},
+              {"processor time, p99", percentile(processor, 0.99)},
               {"for each 1000 points", 1e3 * median(whole) / r.nodes},
               {"memory (MB, largest of the process so far)", peak_megabytes()}};
   if (rivals) time_rivals(block.fem, r);

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "evidence/timing.h"
+
 namespace filum {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point begin) { return std::chrono::duration<double, std::milli>(Clock::now() - begin).count(); }
 
 BladeShape square(double side) {
   BladeShape b;

@@ -2,16 +2,14 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 #include "evidence/brain_block.h"
+#include "base/numbers.h"
 #include "evidence/problem_list.h"
 #include "evidence/rod_probe.h"
 
 namespace filum {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 FemSolverOptions exact(double relative) {
   FemSolverOptions o;

@@ -4,15 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "evidence/problem_list.h"
+#include "base/numbers.h"
 #include "evidence/rod_probe.h"
 
 namespace filum {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Roots of cos(b) cosh(b) = -1: the first bending vibrations of a cantilever of length 1, omega = b^2 sqrt(B/(rho A)).
 constexpr std::array<double, 3> kModes = {1.875104069, 4.694091133, 7.854757438};

@@ -8,20 +8,16 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "evidence/problem_list.h"
+#include "base/numbers.h"
 #include "evidence/rod_probe.h"
 #include "evidence/stability.h"
 
 namespace filum {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Energy of a straight rod closed into a regular polygon of n corners over that of the circle, B pi / R.
 double ring_energy(int n) {
@@ -69,7 +65,7 @@ void list_polygon(ProblemList& list, int n) {
 
 /// The tip of a cantilever, over its length; the angle below the horizontal.
 struct Tip {
-  double reach = kNan, drop = kNan, angle = kNan;  // [1], [1], [deg]
+  double reach = kNaN, drop = kNaN, angle = kNaN;  // [1], [1], [deg]
 };
 
 /// Clamped in the middle of its first edge: the node behind that carries the bending from there on.
@@ -145,7 +141,7 @@ void list_cantilevers(ProblemList& list) {
 
 /// What a strut of length 1 and B = 1 shows whose pinned ends have turned by a given angle.
 struct Strut {
-  double load = kNan, shortening = kNan, deflection = kNan;  // over P_cr, over L, over L
+  double load = kNaN, shortening = kNaN, deflection = kNaN;  // over P_cr, over L, over L
 };
 
 /// A pinned strut of an odd number of edges, bowed a little: the middle edge lies along the line of the load.

@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <vector>
 
 #include "evidence/linking.h"
+#include "base/numbers.h"
 #include "evidence/problem_list.h"
 #include "evidence/rod_probe.h"
 
 namespace filum {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Angle [rad] by which the director of an edge has turned when the edge was led once round a cone of half angle `cone` in `steps`.
 double cone_holonomy(int steps, double cone) {

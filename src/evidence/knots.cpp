@@ -4,17 +4,16 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "evidence/braid_knot.h"
+#include "base/numbers.h"
+#include "evidence/percentile.h"
 #include "evidence/problem_list.h"
 
 namespace filum {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Complete elliptic integrals of the parameter m: K (.x) and E (.y), by the arithmetic-geometric mean.
 Eigen::Vector2d elliptic(double m) {
@@ -42,13 +41,6 @@ double jawed_force(double scaled_h_over_e) {
     (here < scaled_h_over_e ? low : high) = m;
   }
   return x * x * x / (96.0 * std::sqrt(3.0) * kPi * kPi);
-}
-
-double median(std::vector<double> v) {
-  if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
 }
 
 /// Median of F/F_theory while a knot of 2n + 1 crossings is drawn from h/e = `from` to `to`; the pull slides the braid all the time.

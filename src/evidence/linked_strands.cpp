@@ -2,15 +2,14 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "base/numbers.h"
 #include "evidence/linking.h"
 
 namespace filum {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr int kNodes = 11;            // of a hook
+constexpr int kHookNodes = 11;            // of a hook
 constexpr double kEdge = 0.4e-3;      // [m]
 constexpr double kEnd = 1.6e-3;       // [m], mean height of the ends above the middle, and depth below it
 constexpr double kSwing = 0.35e-3;    // [m], of the ends, up and down
@@ -20,9 +19,9 @@ constexpr double kStrike = 2.0;       // [m/s]
 
 /// A hook that hangs from z = `end`: down, half round and up again, in the plane of z and `across`.
 Points hook(double end, const Vec3& across) {
-  const double down = end > 0.0 ? -1.0 : 1.0, straight = 0.5 * ((kNodes - 1) * kEdge - kPi * kWidth);
-  Points x(3, kNodes);
-  for (int i = 0; i < kNodes; ++i) {
+  const double down = end > 0.0 ? -1.0 : 1.0, straight = 0.5 * ((kHookNodes - 1) * kEdge - kPi * kWidth);
+  Points x(3, kHookNodes);
+  for (int i = 0; i < kHookNodes; ++i) {
     const double s = kEdge * i - straight, turn = s / kWidth;
     Vec3 p = -kWidth * across + Vec3(0, 0, down * (straight + s));
     if (turn > 0.0) p = -kWidth * std::cos(turn) * across + Vec3(0, 0, down * (straight + kWidth * std::sin(turn)));
@@ -33,19 +32,19 @@ Points hook(double end, const Vec3& across) {
 }
 
 RodState two_hooks() {
-  Points x(3, 2 * kNodes);
+  Points x(3, 2 * kHookNodes);
   x << hook(kEnd, Vec3::UnitX()), hook(-kEnd, -Vec3::UnitY());
-  RodState s = RodState::from_nodes(x, 2 * kNodes);
-  s.alive[kNodes - 1] = 0;  // between the hooks
+  RodState s = RodState::from_nodes(x, 2 * kHookNodes);
+  s.alive[kHookNodes - 1] = 0;  // between the hooks
   return s;
 }
 
 }  // namespace
 
 LinkedStrands::LinkedStrands()
-    : rod(RodMaterial(), ContactMaterial(), 2 * kNodes), state(two_hooks()), memory_(rod.make_memory()) {
+    : rod(RodMaterial(), ContactMaterial(), 2 * kHookNodes), state(two_hooks()), memory_(rod.make_memory()) {
   options_.max_iterations = 4;  // most of these steps do not converge, and must not cross all the same
-  for (int i : {0, kNodes - 1, kNodes, 2 * kNodes - 1}) rod.boundary.held.col(i).head<3>() = true;
+  for (int i : {0, kHookNodes - 1, kHookNodes, 2 * kHookNodes - 1}) rod.boundary.held.col(i).head<3>() = true;
 }
 
 /// Frequencies without a common period: the motion does not repeat.
@@ -57,8 +56,8 @@ void LinkedStrands::drive(double t) noexcept {
     const Vec3 across = kWidth * Vec3(std::cos(turn), std::sin(turn), 0.0);
     const double height = side * (kEnd + kSwing * std::sin((k == 0 ? 41.0 : 29.3) * w));
     const Vec3 middle(0.3e-3 * std::sin((k == 0 ? 13.1 : 17.9) * w), 0.3e-3 * std::sin((k == 0 ? 19.7 : 11.3) * w), height);
-    rod.boundary.target.col(k * kNodes).head<3>() = middle - across;
-    rod.boundary.target.col(k * kNodes + kNodes - 1).head<3>() = middle + across;
+    rod.boundary.target.col(k * kHookNodes).head<3>() = middle - across;
+    rod.boundary.target.col(k * kHookNodes + kHookNodes - 1).head<3>() = middle + across;
   }
 }
 
@@ -74,6 +73,6 @@ RodStepSummary LinkedStrands::advance() {
   return rod.step(state, memory_, options_);
 }
 
-double LinkedStrands::linking() const { return linking_number(state.x.leftCols(kNodes), state.x.middleCols(kNodes, kNodes)); }
+double LinkedStrands::linking() const { return linking_number(state.x.leftCols(kHookNodes), state.x.middleCols(kHookNodes, kHookNodes)); }
 
 }  // namespace filum

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "base/numbers.h"
 #include "evidence/problem_list.h"
 
 namespace filum {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 LocalizedHelix helix_of(const HelixRod& rod, double m) {
   const double root = rod.shortening / (4.0 * std::sqrt(1.0 - 0.25 * m * m));  // sqrt(B/T)
@@ -80,7 +76,7 @@ struct Envelope {
     middle = 0.5 * (crossing(to, to + 1) + crossing(from, from - 1));
   }
   std::vector<double> cosine, at;  // [1], [m]
-  double least = kNan, width = kNan, middle = kNan;
+  double least = kNaN, width = kNaN, middle = kNaN;
 };
 
 }  // namespace
@@ -97,7 +93,7 @@ LocalizedHelix localized_helix_theory(const HelixRod& rod) {
 
 HelixFound localized_helix_found(const HelixRod& rod, int edges) {
   RodProbe probe = straight_rod(rod, edges);
-  if (!wind(probe, rod)) return {{kNan, kNan, kNan, kNan}, kNan};
+  if (!wind(probe, rod)) return {{kNaN, kNaN, kNaN, kNaN}, kNaN};
   const LocalizedHelix theory = localized_helix_theory(rod);
   const Envelope envelope(probe.state);
   HelixFound found;

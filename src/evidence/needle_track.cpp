@@ -1,16 +1,15 @@
 // A needle through tissue: forces and work of a puncture, tearing.
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "evidence/problem_list.h"
+#include "base/numbers.h"
 #include "physics/track_rig.h"
 
 namespace filum {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMove = 1e-6;  // [m], of the vice in a step of 2 ms: 0.5 mm/s
 
 /// Drives on until the event, at most `most` [m].
@@ -34,7 +33,7 @@ double puncture_ratio(double angle) {
     if (std::string(rig.last_event()) == "puncture") return std::max(before, s.force) / 20e-3;
     before = s.force;
   }
-  return kNan;
+  return kNaN;
 }
 
 /// Least-squares slope of force against length inside, between 0.2 and 0.8 mm. `speed` [m/s].
@@ -62,7 +61,7 @@ double passage_balance() {
   RigOptions o;
   o.track = plain_track(5e-3, 2e-3, 10.0);
   TrackRig rig(o);
-  if (!drive_until(rig, "needle-out", 2e-3)) return kNan;
+  if (!drive_until(rig, "needle-out", 2e-3)) return kNaN;
   for (int k = 0; k < 100; ++k) rig.step(kMove);
   return rig.work() / (rig.tracks().dissipated + rig.stored());
 }
@@ -75,12 +74,12 @@ double tear_ratio(double bite) {
   o.track = plain_track(5e-3, 1e-3, 1.0);
   o.track.tear = 100.0;
   TrackRig rig(o);
-  if (!drive_until(rig, "needle-out", 2e-3)) return kNan;
+  if (!drive_until(rig, "needle-out", 2e-3)) return kNaN;
   for (int k = 0; k < 600; ++k) {
     rig.step(0.0, kMove);
     if (std::string(rig.last_event()) == "tear") return rig.event_force() / (o.track.tear * bite);
   }
-  return kNan;
+  return kNaN;
 }
 
 void list_puncture(ProblemList& list) {

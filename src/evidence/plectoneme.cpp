@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
+#include "base/numbers.h"
 #include "evidence/linking.h"
+#include "evidence/percentile.h"
 #include "evidence/problem_list.h"
 
 namespace filum {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kLength = 0.5, kRadius = 1.55e-3, kSlack = 0.3;  // [m], [m], [-]
 constexpr double kTurns = 8.0;
 constexpr int kLookEvery = 50;  // steps, at the linking number
@@ -29,13 +29,6 @@ Points nearly_straight(int n, double edge) {
   Points x = nodes_on_x(n, -0.5 * edge, edge);
   for (int i = 2; i < n - 2; ++i) x.col(i) += Vec3(0, 1e-3, 0.5e-3) * std::sin(kPi * x(0, i) / kLength);
   return x;
-}
-
-double median(std::vector<double> v) {
-  if (v.empty()) return std::nan("");
-  const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-  std::nth_element(v.begin(), middle, v.end());
-  return *middle;
 }
 
 }  // namespace

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "evidence/problem_list.h"
+#include "base/numbers.h"
 #include "evidence/rod_probe.h"
 
 namespace filum {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWeight = 9.81;  // [N/kg]
 
 /// A straight 10 mm thread that lies on a level plane with friction 0.3, pulled along by `pull` times its
@@ -37,7 +34,7 @@ struct Sled {
   double speed(int steps) {
     const double from = probe.state.x.row(0).mean();
     for (int k = 0; k < steps; ++k)
-      if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNan;
+      if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNaN;
     return (probe.state.x.row(0).mean() - from) / (1e-3 * steps);
   }
   static constexpr int kNodes = 11;
@@ -130,7 +127,7 @@ double capstan_ratio(double mu, double angle, double edge) {
   constexpr int kSteps = 600, kCounted = 200;
   for (int k = 0; k < kSteps; ++k) {
     probe.rod.boundary.target.col(n - 1).head<3>() += 5e-3 * probe.options.dt * Vec3(std::sin(angle), 0.0, std::cos(angle));
-    if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNan;
+    if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNaN;
     if (k >= kSteps - kCounted) sum += edge_tension(m, probe.state, n - 3) / edge_tension(m, probe.state, 1);
   }
   return sum / kCounted;
@@ -187,7 +184,7 @@ double stiff_capstan_measured(double mu, double stiffness, double edge) {
   double sum = 0.0;
   for (int k = 0; k < kSteps; ++k) {
     probe.rod.boundary.target(2, n - 1) -= 5e-3 * probe.options.dt;
-    if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNan;
+    if (!probe.rod.step(probe.state, probe.memory, probe.options).sound) return kNaN;
     if (k >= kSteps - kCounted) sum += edge_tension(m, probe.state, n - 3) / edge_tension(m, probe.state, 1);
   }
   return sum / kCounted;

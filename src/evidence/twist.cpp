@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
-#include <numbers>
 
 #include "evidence/linking.h"
+#include "base/numbers.h"
 #include "evidence/problem_list.h"
 #include "evidence/rod_probe.h"
 #include "evidence/stability.h"
@@ -14,12 +13,9 @@
 namespace filum {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// A clamped rod that is pulled and turned at one end: largest relative deviation of its twisting moment from M = C Th/L, and its writhe.
 struct TwistedStraight {
-  double moment_error = kNan, writhe = kNan;
+  double moment_error = kNaN, writhe = kNaN;
 };
 
 TwistedStraight twisted_straight() {
@@ -146,7 +142,7 @@ double critical_moment_pinned(int edges, double T) {
   };
   const double expected = 2.0 * std::sqrt(kPi * kPi + T);
   const double found = critical_load(0.3 * expected, 2.0 * expected, [&](double M) { return determinant(M) > 0.0; });
-  return determinant(found * (1.0 + 1e-6)) < 0.0 ? found : kNan;
+  return determinant(found * (1.0 + 1e-6)) < 0.0 ? found : kNaN;
 }
 
 void list_greenhill(ProblemList& list, double T, bool clamped) {

@@ -5,17 +5,15 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 
 #include "evidence/problem_list.h"
+#include "base/numbers.h"
 #include "evidence/rod_probe.h"
 #include "evidence/vessel_probe.h"
 
 namespace filum {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 TubeSlice plain_tube(const WallLaw& law, int around) {
   TubeSlice s;

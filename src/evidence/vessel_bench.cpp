@@ -1,11 +1,12 @@
 #include "evidence/vessel_bench.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "evidence/percentile.h"
+#include "evidence/timing.h"
 #include "evidence/vessel_probe.h"
 #include "physics/vessel_clamp.h"
 #include "physics/vessel_wall.h"
@@ -13,14 +14,7 @@
 namespace filum {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr double kElement = 0.12e-3;  // [m], along
-
-double median(std::vector<double> v) {
-  if (v.empty()) return 0.0;
-  std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
 
 /// Two stumps of a rat femoral artery (models/vessel/rat-femoral-artery.yaml without its opening angle).
 VesselMesh stumps(int around, int along) {

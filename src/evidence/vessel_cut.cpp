@@ -1,18 +1,14 @@
 // A vessel's ring under its residual stress, cut through along its length, springs open to the angle from which it was closed.
 
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numbers>
 
 #include "evidence/problem_list.h"
+#include "base/numbers.h"
 #include "evidence/vessel_probe.h"
 
 namespace filum {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kPi = std::numbers::pi;
 
 /// The closed ring with nodes of its own on both sides of the half plane of angle zero.
 VesselMesh cut_open(VesselMesh mesh, int around) {
@@ -33,7 +29,7 @@ VesselMesh cut_open(VesselMesh mesh, int around) {
 }
 
 struct Opened {
-  double angle = kNan, radius = kNan;  // [rad], [m]: what is missing to a full turn, inner radius
+  double angle = kNaN, radius = kNaN;  // [rad], [m]: what is missing to a full turn, inner radius
 };
 
 /// Sum of the angles between the faces of the elements of the inner layer, and the radius of the arc on which its nodes lie.

@@ -1,13 +1,12 @@
 #include "evidence/vessel_probe.h"
 
 #include <cstdio>
-#include <numbers>
 
+#include "base/numbers.h"
 #include "evidence/rod_probe.h"
 
 namespace filum {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 TubeSlice rabbit_carotid(bool opened) {
   TubeSlice s;

@@ -7,15 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "physics/tube_slice.h"
+#include "base/numbers.h"
 #include "reconcile/full_solver.h"
 
 namespace filum::reconcile {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kStates = 6;  // pressures at which the finite elements are asked
 
 /// Inner radius [m] of the open sector that closes to a tube from a to b without load: neo-Hookean, midpoint rule.

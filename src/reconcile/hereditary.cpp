@@ -1,12 +1,11 @@
 #include "reconcile/hereditary.h"
 
 #include <cmath>
-#include <numbers>
+
+#include "base/numbers.h"
 
 namespace filum::reconcile {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Per term: decay over dt and the mean of the decay over a linear increment, A = (1 - exp(-dt/tau)) tau/dt.
 struct Step {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMost = 500;  // points of one curve that are drawn
 
-std::string number(double v) {
+std::string coordinate(double v) {
   char text[32];
   std::snprintf(text, sizeof text, "%.5g", std::abs(v) < 1e-300 ? 0.0 : v);
   return text;
@@ -79,7 +79,7 @@ std::string plot(const PlotText& text, const std::vector<Curve>& curves, int wid
   widen(f.y0, f.y1);
   std::string out = "<svg viewBox='0 0 " + std::to_string(width) + " " + std::to_string(height) + "' width='" + std::to_string(width) + "' role='img'>";
   const auto label = [&](double x, double y, const std::string& s, const char* anchor) {
-    out += "<text x='" + number(x) + "' y='" + number(y) + "' text-anchor='" + anchor + "'>" + escaped(s) + "</text>";
+    out += "<text x='" + coordinate(x) + "' y='" + coordinate(y) + "' text-anchor='" + anchor + "'>" + escaped(s) + "</text>";
   };
   out += "<rect x='58' y='26' width='" + std::to_string(width - 70) + "' height='" + std::to_string(height - 62) + "' fill='none' stroke='#999'/>";
   label(58, 16, text.title, "start");
@@ -88,8 +88,8 @@ std::string plot(const PlotText& text, const std::vector<Curve>& curves, int wid
     std::snprintf(line, sizeof line, "<path d='M%.1f %.1fL%.1f %.1f' stroke='#999'/>", x0, y0, x1, y1);
     out += line;
   };
-  for (const double x : ticks(f.x0, f.x1)) mark(f.px(x), height - 36, f.px(x), height - 32), label(f.px(x), height - 20, number(x), "middle");
-  for (const double y : ticks(f.y0, f.y1)) mark(54, f.py(y), 58, f.py(y)), label(52, f.py(y) + 4, number(y), "end");
+  for (const double x : ticks(f.x0, f.x1)) mark(f.px(x), height - 36, f.px(x), height - 32), label(f.px(x), height - 20, coordinate(x), "middle");
+  for (const double y : ticks(f.y0, f.y1)) mark(54, f.py(y), 58, f.py(y)), label(52, f.py(y) + 4, coordinate(y), "end");
   label(0.5 * (58 + width), height - 6, text.x, "middle");
   out += "<text transform='rotate(-90)' x='" + std::to_string(-height / 2) + "' y='12' text-anchor='middle'>" + escaped(text.y) + "</text>";
   for (const Curve& c : curves) out += curve(c, f);

@@ -32,7 +32,7 @@ Json json_of(const std::vector<Term>& terms) {
   return out;
 }
 
-Json names(const std::vector<Effect>& effects) {
+Json named(const std::vector<Effect>& effects) {
   Json out = Json::array();
   for (const Effect e : effects) out.push_back(info(e).name);
   return out;
@@ -45,7 +45,7 @@ Json rivals_json(const Result& r) {
   if (r.verdict == "ambiguous" && !r.rivals.empty()) best = r.rivals[0].evidence;
   Json out = Json::array();
   for (const Tried& t : r.rivals)
-    out.push_back({{"effects", names(t.effects)}, {"evidence", finite(best - t.evidence)}, {"form", t.form}, {"explained", finite(t.explained)}});
+    out.push_back({{"effects", named(t.effects)}, {"evidence", finite(best - t.evidence)}, {"form", t.form}, {"explained", finite(t.explained)}});
   return out;
 }
 
@@ -82,7 +82,7 @@ Json not_testable_json(const std::vector<NotTestable>& all) {
 
 Json tried_json(const std::vector<Tried>& all) {
   Json out = Json::array();
-  for (const Tried& t : all) out.push_back({{"effects", names(t.effects)}, {"form", t.form}, {"evidence", finite(-t.evidence)}, {"explained", finite(t.explained)}, {"why", t.why}});
+  for (const Tried& t : all) out.push_back({{"effects", named(t.effects)}, {"form", t.form}, {"evidence", finite(-t.evidence)}, {"explained", finite(t.explained)}, {"why", t.why}});
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "server/encode_brain.h"
 #include "server/encode_needle.h"
+#include "server/vector_json.h"
 
 #include <algorithm>
 #include <array>
@@ -18,8 +19,6 @@ using nlohmann::json;
 std::string text_of(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
 json optional_text(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
-
-json vector_json(const Vec3& v) { return json::array({v.x(), v.y(), v.z()}); }
 
 json task_info_json(const TaskInfoView& task) {
   return {{"name", task.name},

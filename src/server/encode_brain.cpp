@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "server/vector_json.h"
+
 namespace filum {
 namespace {
 
@@ -24,8 +26,6 @@ json flat(const std::vector<std::array<int, 3>>& triangles) {
     for (const int i : t) list.push_back(i);
   return list;
 }
-
-json vector_json(const Vec3& v) { return json::array({v.x(), v.y(), v.z()}); }
 
 /// Six digits are a micrometre in a field of some centimetres.
 void append(std::string& out, const double* x, int n, double scale) {

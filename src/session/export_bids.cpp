@@ -8,10 +8,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/numbers.h"
 #include "session/export.h"
 
 namespace filum {
@@ -20,7 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
 struct Channel {
   const char* name;
@@ -88,8 +87,8 @@ std::string row_of(const std::vector<double>& cells) {
 }
 
 void add_pose(std::vector<double>& cells, const Pose* X) {
-  for (int i = 0; i < 3; ++i) cells.push_back(X ? X->p[i] : kAbsent);
-  for (int i = 0; i < 4; ++i) cells.push_back(X ? X->q.coeffs()[i] : kAbsent);  // x y z w
+  for (int i = 0; i < 3; ++i) cells.push_back(X ? X->p[i] : kNaN);
+  for (int i = 0; i < 4; ++i) cells.push_back(X ? X->q.coeffs()[i] : kNaN);  // x y z w
 }
 
 /// Names of the files of one recording.
@@ -106,7 +105,7 @@ struct Names {
 
 /// Rate of a series as it came: readings less one over the time between the first and the last. [Hz]
 struct Rate {
-  double first = kAbsent, last = kAbsent;
+  double first = kNaN, last = kNaN;
   std::size_t n = 0;
   void take(double t) {
     if (n++ == 0) first = t;
@@ -170,8 +169,8 @@ void write_hand(const RecordingReader& recording, const Names& names, int tool, 
       std::vector<double> cells{1e-6 * static_cast<double>(s.device_time_us - start)};
       rate.take(cells.front());
       add_pose(cells, s.has_pose ? &s.X_WD : nullptr);
-      cells.push_back(s.has_grip_angle ? s.grip_angle : kAbsent);
-      cells.push_back(s.has_grip_force ? s.grip_force : kAbsent);
+      cells.push_back(s.has_grip_angle ? s.grip_angle : kNaN);
+      cells.push_back(s.has_grip_force ? s.grip_force : kNaN);
       cells.push_back(s.raw_angle);
       cells.push_back(s.raw_force);
       cells.push_back(s.buttons);
@@ -194,8 +193,8 @@ void write_scene(const RecordingReader& recording, const Names& names, int tool,
       std::vector<double> cells{static_cast<double>(record.step) * meta.dt};
       rate.take(cells.front());
       add_pose(cells, in.valid ? &in.X_WD : nullptr);
-      cells.push_back(in.valid ? in.grip_angle : kAbsent);
-      cells.push_back(in.has_grip_force ? in.grip_force : kAbsent);
+      cells.push_back(in.valid ? in.grip_angle : kNaN);
+      cells.push_back(in.has_grip_force ? in.grip_force : kNaN);
       out << row_of(cells);
     }
   }

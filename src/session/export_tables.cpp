@@ -8,10 +8,10 @@
 
 #include "session/table_builder.h"
 
+#include "base/numbers.h"
+
 namespace filum {
 namespace {
-
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
 std::string hex(std::uint64_t value) {
   char text[20];
@@ -38,7 +38,7 @@ Table inputs_table(const RecordingReader& recording) {
       table.add_quaternion(prefix + "q", "commanded orientation of the tool, world frame", tool.X_WD.q);
       table.add(prefix + "grip_angle", "rad", "commanded opening of the jaws", tool.grip_angle);
       table.add(prefix + "grip_force", "N", "measured squeeze; empty where not measured",
-                tool.has_grip_force ? tool.grip_force : kAbsent);
+                tool.has_grip_force ? tool.grip_force : kNaN);
       table.add_integer(prefix + "buttons", "-", "bit set: 1 clutch, 2 cut, 4 next", tool.buttons);
     }
     table.add_text("state_hash", "-", "XXH3-64 of the whole state after the step, hexadecimal",
@@ -88,8 +88,8 @@ Table samples_table(const RecordingReader& recording) {
   SampleRecord record;
   while (cursor.next_readable(record)) {
     table.new_row();
-    const Vec3 p = record.has_pose ? record.X_WD.p : Vec3::Constant(kAbsent);
-    const Quat q = record.has_pose ? record.X_WD.q : Quat(kAbsent, kAbsent, kAbsent, kAbsent);
+    const Vec3 p = record.has_pose ? record.X_WD.p : Vec3::Constant(kNaN);
+    const Quat q = record.has_pose ? record.X_WD.q : Quat(kNaN, kNaN, kNaN, kNaN);
     table.add_integer("tool", "-", "index of the tool", record.tool);
     table.add_integer("host_time", "us", "steady clock of the host at arrival", record.host_time_us);
     table.add_integer("device_time", "us", "clock of the device, unwrapped", record.device_time_us);
@@ -97,9 +97,9 @@ Table samples_table(const RecordingReader& recording) {
     table.add_vector("p", "m", "position of the handle, world frame; empty where not measured", p);
     table.add_quaternion("q", "orientation of the handle, world frame; empty where not measured", q);
     table.add("grip_angle", "rad", "opening of the jaws; empty where not measured",
-              record.has_grip_angle ? record.grip_angle : kAbsent);
+              record.has_grip_angle ? record.grip_angle : kNaN);
     table.add("grip_force", "N", "squeeze at the pads; empty where not measured",
-              record.has_grip_force ? record.grip_force : kAbsent);
+              record.has_grip_force ? record.grip_force : kNaN);
     table.add("rate", "Hz", "mean rate of this tool's readings over the whole recording, by the host's clock", rates.of(record.tool));
     table.add_integer("raw_angle", "count", "converter's reading of the grip angle", record.raw_angle);
     table.add_integer("raw_force", "count", "converter's reading of the grip force", record.raw_force);

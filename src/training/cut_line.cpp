@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "base/numbers.h"
 
 namespace filum {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 }  // namespace
 

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "base/numbers.h"
+
 namespace filum {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLookAhead = 2e-3;   // [m], further along the path than the tip may jump in a step
 constexpr double kErrorEvery = 1.0;   // [s]
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "base/numbers.h"
 #include "training/cut_line.h"
 
 namespace filum {
@@ -129,7 +130,6 @@ void find_join_lapses(const LapseRules& rules, const JoinReport& join, double ti
 void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, double time,
                      std::vector<Lapse>& found) {
   if (!scene.lumen || join.sector_gap.empty()) return;
-  constexpr double kTurn = 2.0 * std::numbers::pi;
   const CutLine cut(scene);
   const double width = kTurn / static_cast<double>(join.sector_gap.size());
   const auto wrapped = [](double a) { return a - kTurn * std::floor(a / kTurn); };

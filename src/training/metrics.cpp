@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
+#include "base/numbers.h"
+
 namespace filum {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> amplitude_spectrum(const std::vector<double>& signal, int padding) {
   const auto power = static_cast<int>(std::ceil(std::log2(static_cast<double>(signal.size())))) + padding;

@@ -2,11 +2,12 @@
 
 #include "training/needle_task.h"
 
+#include "base/numbers.h"
+
 namespace filum {
 
 /// Angles are those of the stitches' table: from where the vessel's angle is zero.
 StitchRule parse_stitch_rule(const YamlNode& node) {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
   StitchRule r;
   r.count = node.integer_or("stitches", 1, 1, kMaxPasses / 2);
   if (node.has("from")) {

@@ -5,12 +5,12 @@
 #include <numbers>
 #include <string_view>
 
+#include "base/numbers.h"
 #include "training/stitch_knot.h"
 
 namespace filum {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
 constexpr double kLookEvery = 0.25;  // [s], at the thread for knots
 

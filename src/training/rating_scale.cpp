@@ -6,10 +6,11 @@
 #include <cstdio>
 #include <string_view>
 
+#include "base/numbers.h"
+
 namespace filum {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const std::vector<std::string> kMeasures = {"leak", "back-walls", "spacing-variation", "bite-widest", "bite-narrowest", "bite-inequality", "lapses"};
 
 Range range_of(const YamlNode& node, const std::string& key) {

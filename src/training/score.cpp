@@ -6,6 +6,7 @@
 #include <limits>
 #include <string_view>
 
+#include "base/numbers.h"
 #include "base/units.h"
 #include "training/metrics.h"
 #include "training/needle_watch.h"
@@ -42,7 +43,6 @@ std::string band_text(const RubricItem& item) {
 }
 
 double value_of(Measure measure, const Result& r) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const Measures& m = r.measures;
   switch (measure) {
     case Measure::time:

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/numbers.h"
 #include "training/knot_classifier.h"
 #include "training/knot_shape.h"
 #include "training/knot_table.h"
@@ -12,7 +12,6 @@
 namespace filum {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kReachAhead = 1e-3;    // [m], of the jaw tips, within which thread counts as round the tool
 constexpr double kReachBehind = 15e-3;  // [m], behind the tips
 constexpr double kReachAside = 5e-3;    // [m], from the axis
@@ -22,12 +21,6 @@ constexpr int kLooksToUndo = 5;
 
 Points part_nodes(const Observation& o, const ThreadPart& part) {
   return o.positions.middleCols(part.first, std::max(0, part.nodes()));
-}
-
-double largest_tension(const Observation& o) {
-  double most = 0.0;
-  for (int k = 0; k + 1 < o.n_nodes; ++k) most = std::max(most, o.tension[static_cast<std::size_t>(k)]);
-  return most;
 }
 
 const char* event_name(StepKind kind) {

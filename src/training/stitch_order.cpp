@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "base/numbers.h"
 #include "training/cut_line.h"
 #include "training/stitch_knot.h"
 
 namespace filum {
 namespace {
-
-constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double turn_from(double a, double b) { return std::remainder(b - a, kTurn); }
 

@@ -21,7 +21,7 @@ struct MeasureName {
   const char* unit;
 };
 
-constexpr std::array kMeasures = {
+constexpr std::array kMeasureNames = {
     MeasureName{Measure::time, "time", "s"},
     MeasureName{Measure::throws, "throws", "-"},
     MeasureName{Measure::knot_class, "knot-class", "-"},
@@ -71,7 +71,7 @@ constexpr std::array kMeasures = {
 };
 
 const MeasureName& entry_of(Measure measure) {
-  return *std::find_if(kMeasures.begin(), kMeasures.end(),
+  return *std::find_if(kMeasureNames.begin(), kMeasureNames.end(),
                        [&](const MeasureName& m) { return m.measure == measure; });
 }
 
@@ -169,9 +169,9 @@ void parse_needle(const YamlNode& file, const std::string& root, Task& task) {
 
 Measure parse_measure(const YamlNode& node) {
   std::vector<std::string> names;
-  for (const MeasureName& m : kMeasures) names.push_back(m.name);
+  for (const MeasureName& m : kMeasureNames) names.push_back(m.name);
   const std::string word = node.choice("measure", names);
-  return std::find_if(kMeasures.begin(), kMeasures.end(),
+  return std::find_if(kMeasureNames.begin(), kMeasureNames.end(),
                       [&](const MeasureName& m) { return word == m.name; })
       ->measure;
 }

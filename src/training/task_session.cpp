@@ -10,15 +10,6 @@
 #include "training/thread_part.h"
 
 namespace filum {
-namespace {
-
-double largest_tension(const Observation& o) {
-  double most = 0.0;
-  for (int k = 0; k + 1 < o.n_nodes; ++k) most = std::max(most, o.tension[static_cast<std::size_t>(k)]);
-  return most;
-}
-
-}  // namespace
 
 TaskSession::TaskSession(Task task, const SceneDescription& scene)
     : task_(std::move(task)),

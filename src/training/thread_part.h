@@ -2,6 +2,8 @@
 // The part of the thread that can hold the knot: without what was cut off and, if the thread has parted, its
 // longer piece. In tissue every stitch may lie in a piece of its own: the thread is cut as often as it is tied.
 
+#include <algorithm>
+
 #include "world/observation.h"
 
 namespace filum {
@@ -47,6 +49,13 @@ inline double length_between(const Observation& o, int first, int last) {
   double sum = 0.0;
   for (int k = first; k < last; ++k) sum += (o.positions.col(k + 1) - o.positions.col(k)).norm();
   return sum;
+}
+
+/// The largest pull in the thread. [N]
+inline double largest_tension(const Observation& o) {
+  double most = 0.0;
+  for (int k = 0; k + 1 < o.n_nodes; ++k) most = std::max(most, o.tension[static_cast<std::size_t>(k)]);
+  return most;
 }
 
 }  // namespace filum

@@ -11,7 +11,7 @@ namespace filum {
 namespace {
 
 constexpr int kMostSteps = 30, kAbout = 5;  // [px], over which a pixel's mismatch is averaged
-constexpr double kAgrees = 3.0, kQuantisation = 0.29;
+constexpr double kAgrees = 3.0;
 constexpr double kInterpolation = 0.03;  // of the contrast, what sampling between pixels leaves of a fine pattern
 
 /// Which pixels agree, from the difference of the squares; and how many.

@@ -11,6 +11,8 @@ namespace filum {
 /// A square of this side about a point between pixels, 32-bit floats.
 cv::Mat square(const cv::Mat& frame, const cv::Point2f& centre, int side);
 
+inline constexpr double kQuantisation = 0.29;  // [grey levels], rms of rounding to whole levels
+
 struct PartialMatch {
   cv::Point2f at;                // [px]
   double share = 0.0;            // of the square that agrees

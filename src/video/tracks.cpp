@@ -32,7 +32,6 @@ constexpr double kLost = 0.7;
 constexpr double kInView = 0.35;       // share of the square by which a pattern is followed that something covers
 constexpr double kMostly = 0.8;        // share by which it is followed wherever the rest is
 constexpr double kRagged = 0.3;        // share of the rest on the wrong side of a straight edge: what covers comes from a side
-constexpr double kQuantisation = 0.29; // [grey levels], rms of rounding to whole levels
 const cv::TermCriteria kStop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60, 1e-4);
 
 struct Followed {

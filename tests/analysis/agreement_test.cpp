@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 namespace filum {
-namespace {
+namespace agreement_test {
 
 // Six targets, four judges: table 2 of Shrout and Fleiss 1979, whose ICC(2,1) is 0.29.
 TEST(Agreement, IccIsThatOfShroutAndFleiss) {
@@ -96,5 +96,5 @@ TEST(Agreement, FilesHaveARowForEachAndNoInventedNumber) {
   EXPECT_EQ(json["ratings"][1]["marks"]["closure"], 2);
 }
 
-}  // namespace
+}  // namespace agreement_test
 }  // namespace filum

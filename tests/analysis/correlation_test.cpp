@@ -6,7 +6,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace correlation_test {
 
 TEST(Correlation, AgreesWithWorkedNumbers) {
   // r of these five pairs is 0.774597 (= sqrt(0.6)), slope 0.6; ranks with a tie: rho = 0.737865.
@@ -65,5 +65,5 @@ TEST(Correlation, RefusesWithItsReason) {
   EXPECT_FALSE(correlate_within({}).why.empty());
 }
 
-}  // namespace
+}  // namespace correlation_test
 }  // namespace filum

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace filum {
-namespace {
+namespace grasp_force_test {
 
 constexpr double kFs = 1000.0;
 
@@ -71,5 +71,5 @@ TEST(GraspForce, ErrorsAreAgainstTheExpertsBands) {
   EXPECT_EQ(errors.variable, 1);
 }
 
-}  // namespace
+}  // namespace grasp_force_test
 }  // namespace filum

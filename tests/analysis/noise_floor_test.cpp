@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace noise_floor_test {
 
 constexpr int kTool = 1;
 
@@ -60,5 +60,5 @@ TEST(NoiseFloor, IsTakenFromTheSameDeviceOnly) {
   EXPECT_EQ(clamped_like(session("a", "haptic 2", 1.0), clamped), nullptr);
 }
 
-}  // namespace
+}  // namespace noise_floor_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace recorded_series_test {
 
 constexpr std::int64_t kOffset = 5'000'000;  // [us], the host's clock over the scene's
 constexpr int kSamples = 2000;               // one each millisecond
@@ -118,5 +118,5 @@ TEST(RecordedSeries, APathIsCutBySceneTime) {
   EXPECT_TRUE(recorded({}).tools[0].hand.cut(3.0, 4.0).clock.empty());
 }
 
-}  // namespace
+}  // namespace recorded_series_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace filum {
-namespace {
+namespace report_page_test {
 
 /// A session made by hand: 40 s of a 9 Hz tone.
 RecordedSession session(const std::string& file, const std::string& input) {
@@ -44,5 +44,5 @@ TEST(ReportPage, ShowsValuesWithTheirFloorAndRefusalsWithTheirReason) {
   EXPECT_EQ(page.find("<td>35.4 um</td>"), std::string::npos) << "nothing is called tremor that is not resolved";
 }
 
-}  // namespace
+}  // namespace report_page_test
 }  // namespace filum

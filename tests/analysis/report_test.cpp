@@ -10,7 +10,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace report_test {
 
 constexpr double kAmplitude = 40e-6, kTremor = 9.0;  // [m], [Hz]
 constexpr double kScale = 0.1;                       // scene over hand
@@ -169,5 +169,5 @@ TEST(Report, LossesAreGapsAndSessionsAreCorrelated) {
   EXPECT_EQ(report.panels.size(), 3u);
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace filum

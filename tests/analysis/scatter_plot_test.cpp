@@ -5,7 +5,7 @@
 #include <cstdio>
 
 namespace filum {
-namespace {
+namespace scatter_plot_test {
 
 TEST(ScatterPlot, DrawsOneDotAPairAndKeepsNamesOutOfTheMarkup) {
   ScatterPanel panel{"x [N]", "y [m]", {{{1, 2, 3}, {3, 2, 1}}, {{5}, {6}}}, {}, {}};
@@ -44,5 +44,5 @@ TEST(ScatterPlot, AnEmptyPanelIsAFrame) {
   EXPECT_NE(scatter_svg({panel}, {}).find("<rect"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace scatter_plot_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace spectrum_test {
 
 constexpr double kFs = 200.0;  // [Hz]
 
@@ -87,5 +87,5 @@ TEST(Spectrum, ParsevalHoldsForASumOfAxes) {
   EXPECT_NEAR(band_power(sum, 0.0, 100.0).value, band_power(x, 0.0, 100.0).value + band_power(y, 0.0, 100.0).value, 1e-9);
 }
 
-}  // namespace
+}  // namespace spectrum_test
 }  // namespace filum

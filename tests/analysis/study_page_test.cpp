@@ -7,7 +7,7 @@
 #include <sstream>
 
 namespace filum {
-namespace {
+namespace study_page_test {
 
 StudySession session(const std::string& id, const std::string& code, double k) {
   StudySession s;
@@ -97,5 +97,5 @@ TEST(StudyPage, OpensWithoutANetworkAndCountsPeople) {
   EXPECT_EQ(study_plot(study_of({session("a", "P1", 1.0)}, "filum 1"), "trace"), "") << "a task that is not in the study";
 }
 
-}  // namespace
+}  // namespace study_page_test
 }  // namespace filum

@@ -13,7 +13,7 @@
 #include "analysis/study_page.h"
 
 namespace filum {
-namespace {
+namespace study_test {
 
 constexpr double kSeconds = 24.0, kRate = 500.0, kTone = 9.0;  // [s], [Hz], [Hz]
 
@@ -160,5 +160,5 @@ TEST(Study, TasksAreNotMixedAndFilesSayHowTheyWereMade) {
   EXPECT_EQ(study_plot(study, "knot-square"), "");
 }
 
-}  // namespace
+}  // namespace study_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace tremor_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
@@ -122,5 +122,5 @@ TEST(EvenPath, JitterIsMeasuredAndALineStaysALine) {
   for (Eigen::Index k = 1; k + 1 < q.cols(); ++k) ASSERT_NEAR(q(0, k) - q(0, k - 1), 2.0 / even.fs, 1e-9);
 }
 
-}  // namespace
+}  // namespace tremor_test
 }  // namespace filum

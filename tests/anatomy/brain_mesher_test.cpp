@@ -10,7 +10,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace brain_mesher_test {
 
 /// Shares of a ball of grey, 45 mm in radius, about white of 30 mm.
 BrainScan ball() {
@@ -88,5 +88,5 @@ TEST(BrainMesher, Colin27) {
   EXPECT_NEAR(find_brain(read_nifti(head), {}, head).volume, s.volume, 0.1 * s.volume);
 }
 
-}  // namespace
+}  // namespace brain_mesher_test
 }  // namespace filum

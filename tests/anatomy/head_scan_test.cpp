@@ -9,7 +9,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace head_scan_test {
 
 Volume ball() {
   constexpr int n = 72;
@@ -52,5 +52,5 @@ TEST(HeadScan, AnEmptyScanIsRefused) {
   EXPECT_THROW(find_brain(v, {}, "empty"), InputError);
 }
 
-}  // namespace
+}  // namespace head_scan_test
 }  // namespace filum

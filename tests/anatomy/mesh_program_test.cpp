@@ -10,7 +10,7 @@
 #include "anatomy/scans.h"
 
 namespace filum {
-namespace {
+namespace mesh_program_test {
 
 namespace fs = std::filesystem;
 
@@ -73,5 +73,5 @@ TEST_F(MeshProgram, WhatIsAskedWronglyIsNamedAndNothingIsWritten) {
   EXPECT_EQ(err_, "");
 }
 
-}  // namespace
+}  // namespace mesh_program_test
 }  // namespace filum

@@ -10,7 +10,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace nifti_volume_test {
 
 namespace fs = std::filesystem;
 
@@ -67,5 +67,5 @@ TEST(NiftiVolume, NoFileAndNoHeaderAreRefused) {
   EXPECT_THROW(read_nifti(path), InputError);
 }
 
-}  // namespace
+}  // namespace nifti_volume_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace block_cholesky_test {
 
 /// A random positive definite chain matrix with `extra` long-range blocks, in both our form and dense.
 struct Pair {
@@ -87,5 +87,5 @@ TEST(BlockCholesky, AnUndeclaredBlockIsNotFound) {
   EXPECT_GE(c.find(1, 0).index, 0);
 }
 
-}  // namespace
+}  // namespace block_cholesky_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include <thread>
 
 namespace filum {
-namespace {
+namespace exchange_test {
 
 TEST(Queue, KeepsOrderAndRefusesWhenFull) {
   Queue<int> queue(3);
@@ -95,5 +95,5 @@ TEST(Latest, NeverShowsAHalfWrittenValueNorGoesBack) {
   EXPECT_TRUE(forward);
 }
 
-}  // namespace
+}  // namespace exchange_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace filum {
-namespace {
+namespace hash_test {
 
 TEST(Hash, IsXxh3) {
   EXPECT_EQ(hash_text(""), 0x2D06800538D394C2ull);  // published test vector of XXH3_64bits, seed 0, no bytes
@@ -37,5 +37,5 @@ TEST(Hash, TellsMinusZeroFromZero) {
   EXPECT_NE(hash_array(std::span(zero)), hash_array(std::span(minus)));
 }
 
-}  // namespace
+}  // namespace hash_test
 }  // namespace filum

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace markup_test {
 
 TEST(Markup, TextCannotOpenATagOrEndAnAttribute) {
   EXPECT_EQ(escaped("a < b & \"c\" > d"), "a &lt; b &amp; &quot;c&quot; &gt; d");
@@ -11,5 +11,5 @@ TEST(Markup, TextCannotOpenATagOrEndAnAttribute) {
   EXPECT_EQ(escaped("0.5 mN"), "0.5 mN");
 }
 
-}  // namespace
+}  // namespace markup_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include "base/rng.h"
 
 namespace filum {
-namespace {
+namespace pose_test {
 
 Pose random_pose(Rng& rng) {
   return {rng.direction() * rng.uniform(0.0, 0.1), rng.rotation()};
@@ -49,5 +49,5 @@ TEST(Pose, FiniteSeesNaNInEitherPart) {
   EXPECT_FALSE(pose.finite());
 }
 
-}  // namespace
+}  // namespace pose_test
 }  // namespace filum

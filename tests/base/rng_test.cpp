@@ -5,7 +5,7 @@
 #include <array>
 
 namespace filum {
-namespace {
+namespace rng_test {
 
 TEST(Rng, EngineIsTheOneOfTheStandard) {
   Rng rng(5489);  // the C++ standard fixes the 10,000th value of the default-seeded mt19937_64
@@ -79,5 +79,5 @@ TEST(Rng, DirectionsAndRotationsAreUnitAndUnbiased) {
   EXPECT_LT(mean_rotated.norm(), 0.035);
 }
 
-}  // namespace
+}  // namespace rng_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include <thread>
 
 namespace filum {
-namespace {
+namespace stage_clock_test {
 
 void wait_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
@@ -69,5 +69,5 @@ TEST(StageClock, NothingIsHeardWithoutOneOrFromAnotherThread) {
   EXPECT_EQ(clock.begin(), clock.end());
 }
 
-}  // namespace
+}  // namespace stage_clock_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace tet_mesh_test {
 
 TetMesh block() { return box_mesh(Vec3(0, 0, 0), Vec3(3, 2, 1), 3, 2, 2); }
 
@@ -95,5 +95,5 @@ TEST(TetMesh, FileKeepsTheMeshAndACutFileIsRefused) {
   std::filesystem::remove(path);
 }
 
-}  // namespace
+}  // namespace tet_mesh_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace units_test {
 
 struct Case {
   const char* text;
@@ -106,5 +106,5 @@ TEST(Units, FormatsForPeople) {
   EXPECT_EQ(format_prefixed(1000.0, "N"), "1 kN");
 }
 
-}  // namespace
+}  // namespace units_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <sstream>
 
 namespace filum {
-namespace {
+namespace utc_stamp_test {
 
 TEST(UtcStamp, IsThePresentTimeInUtc) {
   const std::time_t before = std::time(nullptr);
@@ -19,5 +19,5 @@ TEST(UtcStamp, IsThePresentTimeInUtc) {
 
 TEST(UtcStamp, IsEmptyWhereItDoesNotFit) { EXPECT_EQ(utc_stamp("%Y-%m-%d %Y-%m-%d %Y-%m-%d %Y-%m-%d"), ""); }
 
-}  // namespace
+}  // namespace utc_stamp_test
 }  // namespace filum

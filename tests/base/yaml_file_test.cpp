@@ -5,7 +5,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace yaml_file_test {
 
 const char* const kModel = R"(# comment
 name: 10-0-nylon
@@ -179,5 +179,5 @@ TEST(YamlFile, MissingFileIsAnInputError) {
   EXPECT_THROW(YamlNode::load(FILUM_SOURCE_DIR), InputError);  // a folder
 }
 
-}  // namespace
+}  // namespace yaml_file_test
 }  // namespace filum

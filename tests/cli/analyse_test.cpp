@@ -10,7 +10,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace analyse_test {
 
 namespace fs = std::filesystem;
 
@@ -53,5 +53,5 @@ TEST_F(Analyse, ASqueezeThatNoDeviceMeasuredIsTheSimulations) {
   expect_refused({"analyse", folder_.file("one"), "--clamped", folder_.file("floor")}, {folder_.file("floor"), "expected"});
 }
 
-}  // namespace
+}  // namespace analyse_test
 }  // namespace filum

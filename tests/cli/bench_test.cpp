@@ -5,7 +5,7 @@
 #include "program_call.h"
 
 namespace filum {
-namespace {
+namespace bench_test {
 
 TEST(Bench, JsonHoldsTheKeysOfTheContract) {
   const auto d = call({"bench", "--json", "rod-100"}).json();
@@ -38,5 +38,5 @@ TEST(Bench, WhatItDoesNotKnowIsRefused) {
   expect_refused({"bench", "--json", "--wild", "1", "no-such-task"}, {"found no-such-task", "knot-square"});
 }
 
-}  // namespace
+}  // namespace bench_test
 }  // namespace filum

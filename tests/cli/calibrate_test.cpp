@@ -13,7 +13,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace calibrate_test {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -130,5 +130,5 @@ TEST(Calibrate, WhatIsAskedWronglyIsNamed) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-}  // namespace
+}  // namespace calibrate_test
 }  // namespace filum

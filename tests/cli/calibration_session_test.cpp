@@ -11,7 +11,7 @@
 #include "tests/devices/simulated_handle.h"
 
 namespace filum {
-namespace {
+namespace calibration_session_test {
 
 using namespace std::chrono_literals;
 
@@ -88,5 +88,5 @@ TEST(CalibrationPlan, WishesOfAPageAreChecked) {
   EXPECT_THROW(CalibrationSession(calibration_plan("{}", "/dev/no-such-port", FILUM_SOURCE_DIR, "")), InputError);
 }
 
-}  // namespace
+}  // namespace calibration_session_test
 }  // namespace filum

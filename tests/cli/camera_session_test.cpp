@@ -11,7 +11,7 @@
 #include "cli/trainer_lab.h"
 
 namespace filum {
-namespace {
+namespace camera_session_test {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
@@ -116,5 +116,5 @@ while read -r line; do echo "{\"state\":\"$line\"}"; done)").program;
   EXPECT_FALSE(lab.post("/api/camera/nothing", "{}").has_value() && !Json::parse(lab.post("/api/camera/nothing", "{}").value()).contains("refused"));
 }
 
-}  // namespace
+}  // namespace camera_session_test
 }  // namespace filum

@@ -5,7 +5,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace child_process_test {
 
 using Read = ChildProcess::Read;
 
@@ -40,5 +40,5 @@ TEST(ChildProcess, AProgramThatIsNotThereIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace child_process_test
 }  // namespace filum

@@ -12,7 +12,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace dataset_upload_test {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -169,5 +169,5 @@ TEST_F(DatasetUploadTest, AFolderThatCannotBeWrittenIsSaid) {
   EXPECT_NE(refusal([&] { upload.begin(wish("block", {{"experiment.yaml", 2}})); }).find("a folder that can be written"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace dataset_upload_test
 }  // namespace filum

@@ -15,7 +15,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace doctor_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -143,5 +143,5 @@ TEST_F(Doctor, TextMarksWhatIsWrong) {
   EXPECT_NE(c.out.find("ok    files"), std::string::npos) << c.out;
 }
 
-}  // namespace
+}  // namespace doctor_test
 }  // namespace filum

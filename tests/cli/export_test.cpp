@@ -10,7 +10,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace export_test {
 
 namespace fs = std::filesystem;
 
@@ -62,5 +62,5 @@ TEST_F(Export, AWrongFormatFileOrFolderIsNamed) {
   expect_refused({"export", folder_.file("one"), "--out", folder_.file("file")}, {folder_.file("file"), "expected"});
 }
 
-}  // namespace
+}  // namespace export_test
 }  // namespace filum

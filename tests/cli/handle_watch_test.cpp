@@ -5,7 +5,7 @@
 #include "devices/sample_faults.h"
 
 namespace filum {
-namespace {
+namespace handle_watch_test {
 
 DeviceSample saying(std::uint32_t bits, int tool = 0) {
   DeviceSample s;
@@ -51,5 +51,5 @@ TEST(HandleWatch, ABrokenWireIsNotAlsoSaturatedAndToolsAreToldApart) {
   EXPECT_EQ(watch.events().size(), 2u);
 }
 
-}  // namespace
+}  // namespace handle_watch_test
 }  // namespace filum

@@ -13,7 +13,7 @@
 #include "tests/reconcile/records.h"
 
 namespace filum {
-namespace {
+namespace import_command_test {
 
 namespace fs = std::filesystem;
 using reconcile::Folder;
@@ -133,5 +133,5 @@ TEST(ImportCommand, WhatIsMissingOrWrongIsNamed) {
   expect_refused({"import", "brain-budday2017", brain, "--out", out}, {"corpus-callosum_shear.csv"});
 }
 
-}  // namespace
+}  // namespace import_command_test
 }  // namespace filum

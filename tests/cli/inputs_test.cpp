@@ -8,7 +8,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace inputs_test {
 
 /// What the refusal of an input says; empty if it was taken.
 std::string refusal(const std::string& input, const std::string& calibration = "", const std::string& task = "tip-hold") {
@@ -99,5 +99,5 @@ TEST(Inputs, EveryStateOfADeviceHasAName) {
     EXPECT_STREQ(name_of(state), name);
 }
 
-}  // namespace
+}  // namespace inputs_test
 }  // namespace filum

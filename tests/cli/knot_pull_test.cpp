@@ -7,7 +7,7 @@
 #include "short_session.h"
 
 namespace filum {
-namespace {
+namespace knot_pull_test {
 
 namespace fs = std::filesystem;
 
@@ -38,5 +38,5 @@ TEST(KnotPull, CanBeLeftBeforeItsEnd) {
   EXPECT_EQ(pull.recorder(), nullptr);
 }  // must neither hang nor crash
 
-}  // namespace
+}  // namespace knot_pull_test
 }  // namespace filum

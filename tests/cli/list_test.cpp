@@ -12,7 +12,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace list_test {
 
 namespace fs = std::filesystem;
 
@@ -83,5 +83,5 @@ TEST(List, ATaskThatCannotBeReadIsNamedAndTheOthersAreStillListed) {
   EXPECT_TRUE(names.count("knot-granny"));
 }
 
-}  // namespace
+}  // namespace list_test
 }  // namespace filum

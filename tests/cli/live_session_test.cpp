@@ -5,7 +5,7 @@
 #include "short_session.h"
 
 namespace filum {
-namespace {
+namespace live_session_test {
 
 TEST(LiveSession, RunsItsTimeAndTheSameTwice) {
   const LiveOutcome one = started_session(nullptr)->wait(), two = started_session(nullptr)->wait();
@@ -45,5 +45,5 @@ TEST(LiveSession, ShowsPicturesAndEvents) {
   EXPECT_GT(pictures, 0);
 }
 
-}  // namespace
+}  // namespace live_session_test
 }  // namespace filum

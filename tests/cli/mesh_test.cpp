@@ -9,7 +9,7 @@
 #include "program_call.h"
 
 namespace filum {
-namespace {
+namespace mesh_test {
 
 namespace fs = std::filesystem;
 
@@ -45,5 +45,5 @@ TEST(Mesh, HandsOverWordForWordAndSaysWhatIsMissing) {
   }
 }
 
-}  // namespace
+}  // namespace mesh_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include "program_call.h"
 
 namespace filum {
-namespace {
+namespace options_test {
 
 TEST(Options, TheRootIsThatOfTheSourcesUnlessSaidOtherwise) {
   CLI::App app;
@@ -45,5 +45,5 @@ TEST(Options, TheProgramNamesVersionAndBuild) {
   EXPECT_NE(text.find('('), std::string::npos);
 }
 
-}  // namespace
+}  // namespace options_test
 }  // namespace filum

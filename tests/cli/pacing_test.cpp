@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace pacing_test {
 
 TEST(Pacing, KeepsTheGridWhenInTime) {
   Pacing pacing(2e-3);
@@ -27,5 +27,5 @@ TEST(Pacing, CountsOverrunsAndTellsTheSlowdown) {
   EXPECT_NEAR(pacing.real_time_factor(), 0.5, 1e-3);
 }
 
-}  // namespace
+}  // namespace pacing_test
 }  // namespace filum

@@ -5,7 +5,7 @@
 #include "program_call.h"
 
 namespace filum {
-namespace {
+namespace program_test {
 
 const char* const kCommands[] = {"train", "run", "replay", "score", "export", "list", "validate", "bench", "analyse", "calibrate", "doctor", "reconcile", "import"};
 
@@ -31,5 +31,5 @@ TEST(Program, WhatItDoesNotKnowIsBadInputAndSaidOnStderr) {
   expect_refused({"run", "tip-hold", "--motion-scale", "0"}, {"--motion-scale"});
 }
 
-}  // namespace
+}  // namespace program_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace rating_desk_test {
 
 using nlohmann::json;
 
@@ -72,5 +72,5 @@ TEST(RatingDesk, ADamagedResultIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace rating_desk_test
 }  // namespace filum

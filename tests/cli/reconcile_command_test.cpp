@@ -11,7 +11,7 @@
 #include "tests/reconcile/records.h"
 
 namespace filum {
-namespace {
+namespace reconcile_command_test {
 
 namespace fs = std::filesystem;
 
@@ -82,5 +82,5 @@ TEST(ReconcileCommand, WhatIsWrongInADatasetIsNamedByFileLineAndColumn) {
   EXPECT_FALSE(fs::exists(out));
 }
 
-}  // namespace
+}  // namespace reconcile_command_test
 }  // namespace filum

@@ -11,7 +11,7 @@
 #include "tests/reconcile/records.h"
 
 namespace filum {
-namespace {
+namespace reconcile_job_test {
 
 using reconcile::Folder;
 
@@ -82,5 +82,5 @@ TEST(ReconcileJob, SaysWhyADatasetIsRefused) {
   EXPECT_NE(job.status()["job"]["message"].get<std::string>().find("b.csv"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace reconcile_job_test
 }  // namespace filum

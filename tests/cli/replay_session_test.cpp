@@ -11,7 +11,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace replay_session_test {
 
 using namespace std::chrono_literals;
 
@@ -99,5 +99,5 @@ TEST_F(ReplaySessionTest, AnotherOverlayShowsTheSamePictureAgain) {
   EXPECT_THROW(ReplaySession(folder_.file("none"), "s2", screen.frames(), screen.states()), InputError);
 }
 
-}  // namespace
+}  // namespace replay_session_test
 }  // namespace filum

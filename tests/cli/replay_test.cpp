@@ -9,7 +9,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace replay_test {
 
 TEST(Replay, ARecordingStepsToTheSameStates) {
   const synthetic::Folder folder;
@@ -74,5 +74,5 @@ TEST(Replay, WhatIsNoRecordingIsBadInput) {
   expect_refused({"replay", folder.file("absent"), "--json"}, {folder.file("absent"), "expected"});
 }
 
-}  // namespace
+}  // namespace replay_test
 }  // namespace filum

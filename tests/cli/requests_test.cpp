@@ -11,7 +11,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace requests_test {
 
 std::string nested(int levels) { return std::string(static_cast<std::size_t>(levels), '[') + std::string(static_cast<std::size_t>(levels), ']'); }
 
@@ -41,5 +41,5 @@ TEST(Requests, NestingThatWouldEndTheStackIsRefused) {
   EXPECT_THROW(requested_rating("s", "t", scale, R"({"rater":"R1","marks":)" + deep + "}"), InputError);
 }
 
-}  // namespace
+}  // namespace requests_test
 }  // namespace filum

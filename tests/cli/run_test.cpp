@@ -10,7 +10,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace run_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -88,5 +88,5 @@ TEST(Run, WhatIsWrongIsNamedWithWhatWasExpected) {
   EXPECT_EQ(text, "another's");
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace score_test {
 
 TEST(Score, ARecordingScoresAsItsRunDid) {
   const synthetic::Folder folder;
@@ -37,5 +37,5 @@ TEST(Score, WhatStepsOtherwiseHereIsSaid) {
   expect_refused({"score", folder.file("absent")}, {folder.file("absent"), "expected"});
 }
 
-}  // namespace
+}  // namespace score_test
 }  // namespace filum

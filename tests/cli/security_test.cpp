@@ -6,7 +6,7 @@
 
 // A knot that is pulled to the end: knot_demo_test.sh; the pull test itself: world/pull_test_test.
 namespace filum {
-namespace {
+namespace security_test {
 
 TEST(Security, WhatIsNotFinishedOrHasNoKnotIsNotPulled) {
   for (const char* name : {"knot-square", "tip-hold"}) {
@@ -38,5 +38,5 @@ TEST(Security, AFinishedKnotOnAPostIsPulledAnUnknotIsNot) {
   EXPECT_FALSE(has_knot_to_pull(task, world, result));
 }
 
-}  // namespace
+}  // namespace security_test
 }  // namespace filum

@@ -10,7 +10,7 @@
 #include "world/model.h"
 
 namespace filum {
-namespace {
+namespace session_files_test {
 
 namespace fs = std::filesystem;
 
@@ -65,5 +65,5 @@ TEST_F(SessionFiles, StoredTextThatIsNoResultGivesNoMessage) {
   for (const char* text : {"", "{", "[]", "null", "{\"task\": 1}"}) EXPECT_EQ(result_message(std::string(text), "s"), "") << text;
 }
 
-}  // namespace
+}  // namespace session_files_test
 }  // namespace filum

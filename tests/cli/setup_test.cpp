@@ -9,7 +9,7 @@
 #include "world/model.h"
 
 namespace filum {
-namespace {
+namespace setup_test {
 
 bool holds(const std::vector<std::string>& list, const std::string& one) { return std::find(list.begin(), list.end(), one) != list.end(); }
 
@@ -51,5 +51,5 @@ TEST(Setup, ModelsAreNamedByFolderAndFile) {
   EXPECT_TRUE(std::filesystem::exists(demonstration_file(FILUM_SOURCE_DIR, "knot-square")));
 }
 
-}  // namespace
+}  // namespace setup_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace study_job_test {
 
 using namespace std::chrono_literals;
 
@@ -63,5 +63,5 @@ TEST(StudyJob, NothingReadableIsAFailureAndARunCanBeCancelled) {
   EXPECT_FALSE(job.file("study.json"));
 }
 
-}  // namespace
+}  // namespace study_job_test
 }  // namespace filum

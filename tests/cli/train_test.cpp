@@ -15,7 +15,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace train_test {
 
 /// A folder that a page can be served from.
 std::string viewer_in(const synthetic::Folder& folder) {
@@ -95,5 +95,5 @@ TEST(Train, AStoreOrRatingsOfANewerProgramAreRefusedAndLeftAlone) {
   }
 }
 
-}  // namespace
+}  // namespace train_test
 }  // namespace filum

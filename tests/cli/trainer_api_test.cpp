@@ -9,7 +9,7 @@
 #include "tests/server/schema_check.h"
 
 namespace filum {
-namespace {
+namespace trainer_api_test {
 
 using nlohmann::json;
 
@@ -66,5 +66,5 @@ TEST(TrainerApi, ADamagedRecordingIsListedWithoutAResultAndUnknownOnesAreNotFoun
   for (const char* path : {"/api/sessions/none", "/api/sessions/../index", "/api/sessions/", "/api/nothing"}) EXPECT_FALSE(trainer->api(path).has_value()) << path;
 }
 
-}  // namespace
+}  // namespace trainer_api_test
 }  // namespace filum

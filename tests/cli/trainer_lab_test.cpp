@@ -12,7 +12,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace trainer_lab_test {
 
 using nlohmann::json;
 using namespace std::chrono_literals;
@@ -99,5 +99,5 @@ TEST_F(TrainerLabTest, ACalibrationHasTheForcepsToItselfAndCanBeStopped) {
   EXPECT_FALSE(l.calibrating());
 }
 
-}  // namespace
+}  // namespace trainer_lab_test
 }  // namespace filum

@@ -12,7 +12,7 @@
 #include "tests/session/disk_limit.h"
 
 namespace filum {
-namespace {
+namespace trainer_test {
 
 using nlohmann::json;
 
@@ -161,5 +161,5 @@ TEST(Trainer, GripOpensToTheWidestAndSqueezesBeyondClosure) {
   EXPECT_DOUBLE_EQ(grip_angle_of(1.0, 0.4), -0.25);
 }
 
-}  // namespace
+}  // namespace trainer_test
 }  // namespace filum

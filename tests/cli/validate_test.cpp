@@ -9,7 +9,7 @@
 #include "program_call.h"
 
 namespace filum {
-namespace {
+namespace validate_test {
 
 TEST(Validate, EveryProblemOfThatNameIsSolvedAndJudged) {
   const auto problems = call({"validate", "--json", "track-friction"}).json()["problems"];
@@ -71,5 +71,5 @@ TEST(Validate, OneFormOfOutputIsAskedFor) { expect_refused({"validate", "--json"
 
 TEST(Validate, AProblemThatDoesNotExistIsRefused) { expect_refused({"validate", "--json", "squaring-the-circle"}, {"found squaring-the-circle", "expected", "linking-number"}); }
 
-}  // namespace
+}  // namespace validate_test
 }  // namespace filum

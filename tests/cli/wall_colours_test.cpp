@@ -8,7 +8,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace wall_colours_test {
 
 TEST(WallColours, ShowsWhatWasAskedForAndNothingElse) {
   const auto model = load_model(FILUM_SOURCE_DIR, "vessel-stitch");
@@ -35,5 +35,5 @@ TEST(WallColours, ShowsWhatWasAskedForAndNothingElse) {
   EXPECT_TRUE(colours.view(o).kind.empty()) << "a scene without tissue";
 }
 
-}  // namespace
+}  // namespace wall_colours_test
 }  // namespace filum

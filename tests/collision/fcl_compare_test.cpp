@@ -19,7 +19,7 @@
 #include "collision/surface_tree.h"
 
 namespace filum {
-namespace {
+namespace fcl_compare_test {
 
 using Pair = std::pair<int, int>;  // of the tissue, of the blade
 using Pairs = std::set<Pair>;
@@ -190,5 +190,5 @@ TEST(SurfaceTreeBesideFcl, FindsTheSamePairsOfTriangles) {
   of_oriented.print("FCL, OBB");
 }
 
-}  // namespace
+}  // namespace fcl_compare_test
 }  // namespace filum

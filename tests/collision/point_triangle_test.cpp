@@ -5,7 +5,7 @@
 #include "base/rng.h"
 
 namespace filum {
-namespace {
+namespace point_triangle_test {
 
 TEST(PointTriangle, NoPointOfAGridOnTheTriangleIsNearer) {
   Rng rng(11);
@@ -32,5 +32,5 @@ TEST(PointTriangle, CornersSidesAndFaceAreTold) {
   EXPECT_LT((closest_on_triangle(Vec3(0.25, 0.25, 7), a, b, c).point - Vec3(0.25, 0.25, 0)).norm(), 1e-15);
 }
 
-}  // namespace
+}  // namespace point_triangle_test
 }  // namespace filum

@@ -5,7 +5,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace segment_distance_test {
 
 struct Segments {
   Vec3 p0, p1, q0, q1;
@@ -157,5 +157,5 @@ TEST(SegmentDistance, GapOfTaperedBarChangesAlongTheNormal) {
   EXPECT_GT(checked, 20);
 }
 
-}  // namespace
+}  // namespace segment_distance_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include "base/rng.h"
 
 namespace filum {
-namespace {
+namespace surface_tree_test {
 
 Box box_of(const Triangle& t, const Points& x) {
   Box b{x.col(t[0]), x.col(t[0])};
@@ -51,5 +51,5 @@ TEST(SurfaceTree, AFarBoxFindsNothingAndALittleRoomIsNotOverrun) {
   EXPECT_EQ(found.size(), 10u);
 }
 
-}  // namespace
+}  // namespace surface_tree_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include "devices/forceps_calibration.h"
 
 namespace filum {
-namespace {
+namespace calibration_file_test {
 
 CalibrationReadings readings() {
   CalibrationReadings r;
@@ -52,5 +52,5 @@ TEST(CalibrationFile, ReadingsAreReadAndNonsenseIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace calibration_file_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace calibration_fit_test {
 
 struct Sensor {
   double gain = 2e-4, zero = 700.0;  // [rad/count], [count]
@@ -103,5 +103,5 @@ TEST(CalibrationFit, RefusesWithTheReason) {
   expect_refusal(fit_line({}, {}, "rad", 1.0), "at 0 values");
 }
 
-}  // namespace
+}  // namespace calibration_fit_test
 }  // namespace filum

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace calibration_guide_test {
 
 TEST(CalibrationGuide, GoesUpAndDownAndAveragesHalfASecond) {
   CalibrationGuide guide(CalibrationGuide::Channel::force, {0.0, 0.5, 1.0}, 2);
@@ -84,5 +84,5 @@ TEST(CalibrationGuide, TheLastValueCanBeTakenBack) {
   EXPECT_NEAR(guide.points().back().count, 1200.0, 1e-9);
 }
 
-}  // namespace
+}  // namespace calibration_guide_test
 }  // namespace filum

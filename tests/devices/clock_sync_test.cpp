@@ -6,7 +6,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace clock_sync_test {
 
 TEST(WideClock, GoesOnAfter71Minutes) {
   WideClock clock;
@@ -61,5 +61,5 @@ TEST(ClockSync, IgnoresAnswersThatCannotBe) {
   EXPECT_FALSE(sync.known());
 }
 
-}  // namespace
+}  // namespace clock_sync_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include "devices/sample_faults.h"
 
 namespace filum {
-namespace {
+namespace demonstrator_test {
 
 const char* kScript = R"(
 format: filum-demonstration/1
@@ -290,5 +290,5 @@ TEST(Demonstrator, IsOverAfterTenSecondsInVain) {
   EXPECT_EQ(device.health().state, DeviceState::finished);
 }
 
-}  // namespace
+}  // namespace demonstrator_test
 }  // namespace filum

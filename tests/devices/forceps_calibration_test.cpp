@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace forceps_calibration_test {
 
 const char* kGood = R"(
 format: filum-forceps/1
@@ -61,5 +61,5 @@ TEST(ForcepsCalibration, RefusesBadFilesByName) {
   }
 }
 
-}  // namespace
+}  // namespace forceps_calibration_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 namespace filum {
-namespace {
+namespace forceps_stream_test {
 
 ForcepsCalibration calibration() {
   return ForcepsCalibration::load(std::string(FILUM_SOURCE_DIR) + "/models/forceps/default.yaml");
@@ -204,5 +204,5 @@ TEST(ForcepsStream, PongsGiveTheOffsetOfTheClock) {
   EXPECT_EQ((link.stream.clock().offset_us() - offset) % (std::int64_t{1} << 32), 0);
 }
 
-}  // namespace
+}  // namespace forceps_stream_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace filum {
-namespace {
+namespace frame_reader_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -307,5 +307,5 @@ TEST(FrameReader, NoDamagedFrameIsEverTakenForGood) {
   EXPECT_GT(caught, 95'000u);
 }
 
-}  // namespace
+}  // namespace frame_reader_test
 }  // namespace filum

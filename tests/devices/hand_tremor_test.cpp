@@ -8,7 +8,7 @@
 #include "devices/pose_script.h"
 
 namespace filum {
-namespace {
+namespace hand_tremor_test {
 
 TEST(HandTremor, HasTheRmsAndTheBandItSays) {
   const HandTremor tremor(60e-6, 9.0, 2.0);
@@ -41,5 +41,5 @@ TEST(HandTremor, AScriptMayHaveOneAndIsTheSameEachTime) {
   EXPECT_LT(most, 300e-6);
 }
 
-}  // namespace
+}  // namespace hand_tremor_test
 }  // namespace filum

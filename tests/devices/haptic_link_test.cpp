@@ -12,7 +12,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace haptic_link_test {
 
 /// A master's socket on loopback.
 class Peer {
@@ -226,5 +226,5 @@ TEST(HapticLink, TheAddressIsNamedInTheRefusal) {
   EXPECT_THROW(HapticLink("127.0.0.1", first.port()), InputError) << "in use";
 }
 
-}  // namespace
+}  // namespace haptic_link_test
 }  // namespace filum

@@ -13,7 +13,7 @@
 #include "igtlTransformMessage.h"
 
 namespace filum {
-namespace {
+namespace igtl_library_test {
 
 using namespace std::chrono_literals;
 
@@ -115,5 +115,5 @@ TEST(IgtlLibrary, WhatIsStreamedTheLibraryUnderstands) {
   socket->CloseSocket();
 }
 
-}  // namespace
+}  // namespace igtl_library_test
 }  // namespace filum

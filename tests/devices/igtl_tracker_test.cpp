@@ -12,7 +12,7 @@
 #include "devices/igtl_stream.h"
 
 namespace filum {
-namespace {
+namespace igtl_tracker_test {
 
 Pose pose_at(double x) {
   Pose X;
@@ -215,5 +215,5 @@ TEST(IgtlTracker, AddressesAreNamedInTheRefusal) {
   EXPECT_THROW(IgtlStream("127.0.0.1", 70000), InputError);
 }
 
-}  // namespace
+}  // namespace igtl_tracker_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace filum {
-namespace {
+namespace monotone_cubic_test {
 
 double value_at(const std::vector<double>& t, const std::vector<double>& y, const std::vector<double>& m,
                 std::size_t i, double u) {
@@ -93,5 +93,5 @@ TEST(MonotoneCubic, ConvergesOnASmoothFunction) {
   }
 }
 
-}  // namespace
+}  // namespace monotone_cubic_test
 }  // namespace filum

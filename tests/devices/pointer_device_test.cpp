@@ -7,7 +7,7 @@
 #include <thread>
 
 namespace filum {
-namespace {
+namespace pointer_device_test {
 
 DeviceSample at(double x, int tool = 0) {
   DeviceSample s;
@@ -126,5 +126,5 @@ TEST(PointerDevice, TwoThreads) {
   EXPECT_LE(received + device.health().lost, static_cast<std::uint64_t>(kCount));
 }
 
-}  // namespace
+}  // namespace pointer_device_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace pose_script_test {
 
 const char* kGood = R"(
 format: filum-demonstration/1
@@ -155,5 +155,5 @@ TEST(PoseScript, MissingFileIsNamed) {
   }
 }
 
-}  // namespace
+}  // namespace pose_script_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace filum {
-namespace {
+namespace pose_track_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -124,5 +124,5 @@ TEST(PoseTrack, SpeedNeverJumps) {
   }
 }
 
-}  // namespace
+}  // namespace pose_track_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace replay_device_test {
 
 std::vector<DeviceSample> recorded(int n, std::int64_t period_us) {
   std::vector<DeviceSample> samples;
@@ -79,5 +79,5 @@ TEST(ReplayDevice, AnEmptyRecordingIsOverAtOnce) {
   EXPECT_EQ(device.health().state, DeviceState::finished);
 }
 
-}  // namespace
+}  // namespace replay_device_test
 }  // namespace filum

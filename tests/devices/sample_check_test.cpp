@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace filum {
-namespace {
+namespace sample_check_test {
 
 DeviceSample good() {
   DeviceSample s;
@@ -46,5 +46,5 @@ TEST(SampleCheck, LooksOnlyAtWhatIsPresent) {
   EXPECT_EQ(fault_of(s), SampleFault::none);
 }
 
-}  // namespace
+}  // namespace sample_check_test
 }  // namespace filum

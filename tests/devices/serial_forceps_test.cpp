@@ -13,7 +13,7 @@
 #include "tests/devices/script_frames.h"
 
 namespace filum {
-namespace {
+namespace serial_forceps_test {
 
 using namespace std::chrono_literals;
 
@@ -213,5 +213,5 @@ TEST(SerialForceps, MeasuresTheOffsetOfTheClock) {
   EXPECT_LE(std::llabs(clock.offset_us() + start), clock.uncertainty_us() + 2);
 }
 
-}  // namespace
+}  // namespace serial_forceps_test
 }  // namespace filum

@@ -4,7 +4,7 @@ foreach(name calibration_file calibration_fit calibration_guide clock_sync demon
 endforeach()
 
 filum_test(devices/igtl_library ${OpenIGTLink_LIBRARIES})
-target_include_directories(devices_igtl_library_test SYSTEM PRIVATE ${OpenIGTLink_INCLUDE_DIRS})
+target_include_directories(devices_tests SYSTEM PRIVATE ${OpenIGTLink_INCLUDE_DIRS})
 
 include(${CMAKE_CURRENT_LIST_DIR}/programs.cmake)
 

@@ -6,7 +6,7 @@
 #include "evidence/sewn_bench.h"
 
 namespace filum {
-namespace {
+namespace bench_test {
 
 DrivenTask no_task(const std::string& task) {
   throw InputError("test", "task", task, "none");
@@ -98,5 +98,5 @@ TEST(Bench, TheMachineIsNamed) {
   EXPECT_NE(machine_text().find(" cores"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace bench_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace {
+namespace json_test {
 
 struct Printed {
   std::string text;
@@ -59,4 +59,4 @@ TEST(EvidenceJson, UnknownNamesAreBadInput) {
   EXPECT_EQ(run("bench --json nonsense").code, 2);
 }
 
-}  // namespace
+}  // namespace json_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace linked_strands_test {
 
 // A million steps: `filum validate linking-number`.
 TEST(LinkedStrands, StayLinkedHoweverTheyAreThrownAbout) {
@@ -41,5 +41,5 @@ TEST(LinkedStrands, DoNotReachEachOthersClosingLine) {
   }
 }
 
-}  // namespace
+}  // namespace linked_strands_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace filum {
-namespace {
+namespace linking_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -57,5 +57,5 @@ TEST(Linking, APlaneCurveDoesNotWrithe) {
   EXPECT_NEAR(writhe(p), 0.0, 1e-12);
 }
 
-}  // namespace
+}  // namespace linking_test
 }  // namespace filum

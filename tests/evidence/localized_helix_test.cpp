@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace filum {
-namespace {
+namespace localized_helix_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -46,5 +46,5 @@ TEST(LocalizedHelix, ACoarseRodIsFurtherOff) {
   EXPECT_LT(fine.envelope_error, 0.06);
 }
 
-}  // namespace
+}  // namespace localized_helix_test
 }  // namespace filum

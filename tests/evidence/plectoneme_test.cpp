@@ -5,7 +5,7 @@
 #include <numbers>
 
 namespace filum {
-namespace {
+namespace plectoneme_test {
 
 /// The table in Clauvelin et al. 2009, as computed anew from their formulas: angle [deg], F R^2/B, M R/B.
 TEST(Plectoneme, LawOfThePly) {
@@ -28,5 +28,5 @@ TEST(Plectoneme, KeepsTheTurnsItWasGivenAsTwistAndWrithe) {
   EXPECT_GT(p.ply().contacts, 5);
 }
 
-}  // namespace
+}  // namespace plectoneme_test
 }  // namespace filum

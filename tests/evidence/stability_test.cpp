@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace filum {
-namespace {
+namespace stability_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kEdges = 40, kN = kEdges + 1;
@@ -70,5 +70,5 @@ TEST(Stability, PinnedDeterminantWithoutMomentVanishesAtEulersLoad) {
   EXPECT_NEAR(determinant(kPi * kPi) / below, 0.0, 0.02);
 }
 
-}  // namespace
+}  // namespace stability_test
 }  // namespace filum

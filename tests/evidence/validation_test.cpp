@@ -11,7 +11,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace validation_test {
 
 /// Problems that ask several things of one solution are run together, under the name that all of them begin with.
 std::vector<std::string> runs() {
@@ -112,5 +112,5 @@ TEST(Validation, AnOrderBelowTheOneStatedFails) {
   EXPECT_TRUE(p.passed);
 }
 
-}  // namespace
+}  // namespace validation_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include "world/task_folder.h"
 
 namespace filum {
-namespace {
+namespace wild_hands_test {
 
 constexpr int kSeeds = 20;
 
@@ -62,5 +62,5 @@ TEST(WildHands, SameSeedSameHandsAndTheyHit) {
   EXPECT_GT(hardest, 1e-4) << "hands that touch nothing test nothing";
 }
 
-}  // namespace
+}  // namespace wild_hands_test
 }  // namespace filum

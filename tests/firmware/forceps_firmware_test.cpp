@@ -17,7 +17,7 @@
 #include "tests/firmware/avr_board.h"
 
 namespace filum {
-namespace {
+namespace forceps_firmware_test {
 
 ForcepsCalibration calibration() {
   ForcepsCalibration c;
@@ -279,5 +279,5 @@ TEST(ForcepsFirmware, OffsetAndDriftOfItsClockAreEstimated) {
   EXPECT_NEAR(line.offset_us, static_cast<double>(last.device_time_us - last.host_time_us) + 1750.0, 1250.0);
 }
 
-}  // namespace
+}  // namespace forceps_firmware_test
 }  // namespace filum

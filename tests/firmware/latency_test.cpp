@@ -16,7 +16,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace latency_test {
 
 /// A hand that stays where it is.
 class StillHand final : public Device {
@@ -99,5 +99,5 @@ TEST(Latency, FromThePulseAtTheConverterToTheEventInTheWorld) {
   EXPECT_LE(median, 5.0);
 }
 
-}  // namespace
+}  // namespace latency_test
 }  // namespace filum

@@ -15,7 +15,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace blade_feel_test {
 
 class Hand final : public Device {
  public:
@@ -155,5 +155,5 @@ TEST(BladeFeel, StableAndPassiveAgainstStiffHands) {
   }
 }
 
-}  // namespace
+}  // namespace blade_feel_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace filum {
-namespace {
+namespace hand_coupling_test {
 
 /// A hand on a haptic device: a mass on a spring towards where the person wants to be, hardly damped. It gets
 /// the rendered force held constant for a millisecond, as a real device does.
@@ -186,5 +186,5 @@ TEST(HandCoupling, TheTankKeepsExactAccounts) {
   }
 }
 
-}  // namespace
+}  // namespace hand_coupling_test
 }  // namespace filum

@@ -13,7 +13,7 @@
 #include "haptics/haptic_loop.h"
 
 namespace filum {
-namespace {
+namespace haptic_link_loop_test {
 
 /// Hands the loop what comes down the line, and the line what the loop gives back.
 class LineEnd final : public Device {
@@ -204,5 +204,5 @@ TEST(HapticLinkLoop, NonsenseFromTheLineNeverReachesTheMotors) {
   }
 }
 
-}  // namespace
+}  // namespace haptic_link_loop_test
 }  // namespace filum

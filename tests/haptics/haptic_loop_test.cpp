@@ -5,39 +5,17 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <stdexcept>
 
 #include "devices/demonstrator.h"
 #include "devices/pointer_device.h"
 #include "devices/serial_forceps.h"
+#include "tests/allocation_count.h"
 #include "tests/devices/pty.h"
 #include "tests/devices/script_frames.h"
 
-namespace {
-
-thread_local bool counting = false;
-thread_local std::uint64_t allocations = 0;
-
-}  // namespace
-
-// NOLINTBEGIN: every allocation of this program passes here, so that tick() can be caught at it.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  if (counting) ++allocations;
-  if (void* p = std::malloc(size ? size : 1)) return p;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept {
-  std::free(p);
-}
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
-}
-// NOLINTEND
-
 namespace filum {
-namespace {
+namespace haptic_loop_test {
 
 const char* kScript = R"(
 format: filum-demonstration/1
@@ -194,17 +172,15 @@ TEST(HapticLoop, ATickAllocatesNothing) {
     hand.push(i % 7 == 0 ? at(std::nan("")) : at(1e-3));
     show_tool(loop, now, {1e-3, 1e-3, 0});
     if (i == 450) pty.unplug();
-    counting = true;
+    const long before = allocations;
     loop.tick(now);
-    counting = false;
+    ASSERT_EQ(allocations, before) << "tick " << i;
   }
-  EXPECT_EQ(allocations, 0u);
   EXPECT_GT(loop.report().read().devices[0].received, 1000u);
   EXPECT_EQ(loop.report().read().devices[0].state, DeviceState::lost);
-  counting = true;
+  const long before = allocations;
   ::operator delete(::operator new(1));
-  counting = false;
-  EXPECT_EQ(allocations, 1u) << "the counter counts";
+  EXPECT_EQ(allocations, before + FILUM_COUNTS_ALLOCATIONS) << "the counter counts";
 }
 
 TEST(HapticLoop, RunsInAThreadOfItsOwnAndStops) {
@@ -252,5 +228,5 @@ TEST(HapticLoop, ReadsTheToolsOffAnObservation) {
   EXPECT_EQ(states.tools[1].f_T_W, Vec3(4, 5, 6));
 }
 
-}  // namespace
+}  // namespace haptic_loop_test
 }  // namespace filum

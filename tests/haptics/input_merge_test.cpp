@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace filum {
-namespace {
+namespace input_merge_test {
 
 constexpr std::int64_t kStale = 100'000;
 
@@ -170,5 +170,5 @@ TEST(InputMerge, APedalOnAnotherDeviceHoldsTheClutch) {
   EXPECT_EQ(merge.inputs(1000).tools[0].X_WD.p.x(), 0.0);
 }
 
-}  // namespace
+}  // namespace input_merge_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include "haptics/hand_coupling.h"
 
 namespace filum {
-namespace {
+namespace local_contact_test {
 
 /// A tool at the world's rate: hung on the hand by 500 N/m, pressed against a plane of stiffness `wall` at z = 0 from above.
 /// Quasi-static: k_c (p_D - p_T) + K (0 - p_T) = 0 below the plane.
@@ -92,5 +92,5 @@ TEST(LocalContact, AcrossTheNormalTheTipFollowsTheHand) {
   EXPECT_NEAR(tip.z(), -0.5e-4, 1e-15) << "as stiff as the coupling until more is known";
 }
 
-}  // namespace
+}  // namespace local_contact_test
 }  // namespace filum

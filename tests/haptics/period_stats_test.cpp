@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace filum {
-namespace {
+namespace period_stats_test {
 
 TEST(PeriodStats, QuantilesAgreeWithSortingWithinABucket) {
   std::mt19937 random(6);
@@ -37,5 +37,5 @@ TEST(PeriodStats, LongStallsAndEmptyHistograms) {
   EXPECT_LE(stats.quantile(0.5), 20);
 }
 
-}  // namespace
+}  // namespace period_stats_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace filum {
-namespace {
+namespace scene_eyes_test {
 
 struct Scene {
   Observation o;
@@ -108,5 +108,5 @@ TEST(SceneEyes, WaysThroughTissueAreSeenOnceTheyAreThere) {
   EXPECT_EQ(s.seen.p, Vec3::Zero());
 }
 
-}  // namespace
+}  // namespace scene_eyes_test
 }  // namespace filum

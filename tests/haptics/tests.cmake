@@ -2,3 +2,4 @@ foreach(name hand_coupling haptic_link_loop haptic_loop input_merge local_contac
   filum_test(haptics/${name})
 endforeach()
 filum_test(haptics/blade_feel filum_world)
+target_link_libraries(haptics_tests PRIVATE filum_allocation_count)

@@ -7,7 +7,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace elastic_rod_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -258,5 +258,5 @@ TEST(ElasticRod, KeepsASetWhenBentBeyondItsLimit) {
   }
 }
 
-}  // namespace
+}  // namespace elastic_rod_test
 }  // namespace filum

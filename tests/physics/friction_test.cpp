@@ -5,7 +5,7 @@
 #include <random>
 
 namespace filum {
-namespace {
+namespace friction_test {
 
 constexpr double kMu = 0.3, kNormal = 2.0, kStiffness = 1000.0;
 const Vec3 kUp = Vec3::UnitZ();
@@ -69,5 +69,5 @@ TEST(Friction, LightlyLoadedContactGivesByThePresliding) {
   EXPECT_DOUBLE_EQ(stick_stiffness(1e4, 0.2, 10.0, 0.5e-6), 1e4);
 }
 
-}  // namespace
+}  // namespace friction_test
 }  // namespace filum

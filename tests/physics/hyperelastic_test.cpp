@@ -7,7 +7,7 @@
 
 using namespace filum;
 
-namespace {
+namespace hyperelastic_test {
 
 Eigen::Matrix3d matrix_of(const Six& C) {
   Eigen::Matrix3d m;
@@ -182,4 +182,4 @@ TEST(Hyperelastic, HookeConstants) {
   EXPECT_NEAR(law.lambda_point(), 10e3 * 0.25 / (1.0 - 0.0625), 1e-9);  // plane stress: E nu / (1 - nu^2)
 }
 
-}  // namespace
+}  // namespace hyperelastic_test

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <random>
 
-#include "tests/physics/allocation_count.h"
+#include "tests/allocation_count.h"
 
 namespace filum {
-namespace {
+namespace implicit_rod_test {
 
 Points straight(int n, double spacing) {
   Points x = Points::Zero(3, n);
@@ -266,5 +266,5 @@ TEST(LateTolerance, IsStrictAtFirstAndGrowsUpToItsLimit) {
   EXPECT_DOUBLE_EQ(late_tolerance(RodStepOptions(), 19, 10e-3), 10e-6) << "not in closed-form problems";
 }
 
-}  // namespace
+}  // namespace implicit_rod_test
 }  // namespace filum

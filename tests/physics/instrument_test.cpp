@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace instrument_test {
 
 constexpr double kStep = 2e-3;
 
@@ -131,5 +131,5 @@ TEST(Instrument, JawsMeetWhenClosedAndPartWhenOpened) {
   EXPECT_GT(open.b_T[2].z(), open.a_T[2].z());
 }
 
-}  // namespace
+}  // namespace instrument_test
 }  // namespace filum

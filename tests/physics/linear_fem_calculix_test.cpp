@@ -15,7 +15,7 @@
 
 using namespace filum;
 
-namespace {
+namespace linear_fem_calculix_test {
 
 constexpr double kYoung = 10e3, kPoisson = 0.45, kGravity = 0.1;
 
@@ -81,4 +81,4 @@ TEST(TissueCalculix, EveryNodeOfTheSameCantilever) {
   EXPECT_EQ(seen, b.mesh.n_nodes());
 }
 
-}  // namespace
+}  // namespace linear_fem_calculix_test

@@ -11,7 +11,7 @@
 #include "physics/linear_fem.h"
 
 namespace filum {
-namespace {
+namespace linear_fem_solver_test {
 
 struct Problem {
   std::unique_ptr<LinearFem> fem;
@@ -112,5 +112,5 @@ TEST(FemSystem, NothingToDoTakesNoIteration) {
   EXPECT_EQ(u.norm(), 0.0);
 }
 
-}  // namespace
+}  // namespace linear_fem_solver_test
 }  // namespace filum

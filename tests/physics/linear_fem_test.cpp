@@ -13,7 +13,7 @@
 #include "base/rng.h"
 
 namespace filum {
-namespace {
+namespace linear_fem_test {
 
 using Method = FemSolverOptions::Method;
 
@@ -356,5 +356,5 @@ TEST(LinearFem, ImpossibleMaterialsAndMeshesAreRefused) {
   EXPECT_THROW(LinearFem(mesh, {{}}, {}), InputError);
 }
 
-}  // namespace
+}  // namespace linear_fem_test
 }  // namespace filum

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace needle_shape_test {
 
 NeedleShape half_circle() {
   NeedleShape n;
@@ -55,5 +55,5 @@ TEST(NeedleShape, WeighsWhatSteelWeighs) {
   EXPECT_NEAR(n.mass(), 7900.0 * 3.14159265 * 37.5e-6 * 37.5e-6 * 3.77e-3, 1e-9);
 }
 
-}  // namespace
+}  // namespace needle_shape_test
 }  // namespace filum

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/physics/allocation_count.h"
+#include "tests/allocation_count.h"
 
 namespace filum {
-namespace {
+namespace needle_test {
 
 constexpr double kWeight = 9.81;
 
@@ -163,5 +163,5 @@ TEST(Needle, StepsAllocateNothingAndRepeatExactly) {
   EXPECT_EQ(a.q.coeffs(), b.q.coeffs());
 }
 
-}  // namespace
+}  // namespace needle_test
 }  // namespace filum

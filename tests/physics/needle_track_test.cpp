@@ -9,7 +9,7 @@
 #include "physics/track_rig.h"
 
 namespace filum {
-namespace {
+namespace needle_track_test {
 
 constexpr double kMove = 2e-6;
 
@@ -265,5 +265,5 @@ TEST(NeedleTrack, FrictionDragsASoftWallWithoutSwinging) {
   EXPECT_GT(back, -0.05 * drawn);
 }
 
-}  // namespace
+}  // namespace needle_track_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <string>
 
 namespace filum {
-namespace {
+namespace pellet_test {
 
 constexpr double kDt = 2e-3;  // [s]
 
@@ -120,5 +120,5 @@ TEST(Pellet, WhatSlippedOutIsNotTakenAgainBeforeTheJawsOpened) {
   EXPECT_EQ(bench.said.back(), "object-taken");
 }
 
-}  // namespace
+}  // namespace pellet_test
 }  // namespace filum

@@ -15,7 +15,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace pore_flow_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -181,5 +181,5 @@ TEST(PoreFlow, ValuesThatMakeNoTissueAreRefused) {
   EXPECT_NEAR(poisson_by_punch(0.3, 0.5), 1.0 - 0.5 / 0.7, 1e-12);
 }
 
-}  // namespace
+}  // namespace pore_flow_test
 }  // namespace filum

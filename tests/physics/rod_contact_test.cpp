@@ -10,7 +10,7 @@
 #include "collision/segment_distance.h"
 
 namespace filum {
-namespace {
+namespace rod_contact_test {
 
 constexpr double kRadius = 12.5e-6;
 
@@ -220,5 +220,5 @@ TEST(RodContact, ForceIsMinusTheGradientOfTheEnergy) {
   }
 }
 
-}  // namespace
+}  // namespace rod_contact_test
 }  // namespace filum

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 
-#include "tests/physics/allocation_count.h"
+#include "tests/allocation_count.h"
 
 namespace filum {
-namespace {
+namespace rod_lengths_test {
 
 constexpr int kNodes = 41;
 constexpr double kEdge = 2e-4;  // [m]
@@ -113,5 +113,5 @@ TEST(RodLengths, DoesNotAllocate) {
   EXPECT_EQ(allocations, before);
 }
 
-}  // namespace
+}  // namespace rod_lengths_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include "physics/implicit_rod.h"
 
 namespace filum {
-namespace {
+namespace rod_obstacle_test {
 
 constexpr double kFriction = 0.3, kGravity = 9.81;
 
@@ -151,5 +151,5 @@ TEST(RodObstacle, EveryPieceOfACutThreadLiesOnTheSheetWithBothItsEnds) {
   EXPECT_LT(s.x.row(2).maxCoeff(), 0.05e-3) << "or nothing fell";
 }
 
-}  // namespace
+}  // namespace rod_obstacle_test
 }  // namespace filum

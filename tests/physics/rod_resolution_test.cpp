@@ -9,7 +9,7 @@
 #include "collision/segment_distance.h"
 
 namespace filum {
-namespace {
+namespace rod_resolution_test {
 
 constexpr double kRadius = 12.5e-6;
 constexpr int kCapacity = 64;
@@ -162,5 +162,5 @@ TEST(RodResolution, FrictionMemoryFollowsItsEdge) {
   EXPECT_NEAR(s.rest_length.head(b.j).sum(), arc_j, 1e-12);
 }
 
-}  // namespace
+}  // namespace rod_resolution_test
 }  // namespace filum

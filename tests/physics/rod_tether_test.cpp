@@ -5,7 +5,7 @@
 #include "physics/implicit_rod.h"
 
 namespace filum {
-namespace {
+namespace rod_tether_test {
 
 RodState straight(int n, double edge) {
   Points nodes(3, n);
@@ -96,5 +96,5 @@ TEST(RodTether, EndGivesAsMuchAsWhatHoldsIt) {
   EXPECT_NEAR(rod.tethers.list[0].force.x(), series * 100e-6, 1e-3 * series * 100e-6);
 }
 
-}  // namespace
+}  // namespace rod_tether_test
 }  // namespace filum

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace rod_travel_test {
 
 Eigen::Matrix4Xd one_node_goes(int n, int node, double by) {
   Eigen::Matrix4Xd move = Eigen::Matrix4Xd::Zero(4, n);
@@ -42,5 +42,5 @@ TEST(RodTravel, WhatTheReachLeavesOfAMoveIsTheLeastOfTheEdges) {
   EXPECT_DOUBLE_EQ(t.within_reach(), 0.25) << "found anew";
 }
 
-}  // namespace
+}  // namespace rod_travel_test
 }  // namespace filum

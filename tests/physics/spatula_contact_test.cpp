@@ -7,7 +7,7 @@
 #include <numeric>
 
 namespace filum {
-namespace {
+namespace spatula_contact_test {
 
 /// Block of 60 x 60 x 30 mm held below, and a square blade that presses on it from above.
 struct Press {
@@ -176,5 +176,5 @@ TEST(SpatulaContact, ABladeAtTenMetresASecondOrAMetreDeepNeverGivesNaN) {
   EXPECT_TRUE(p.state.u.allFinite());
 }
 
-}  // namespace
+}  // namespace spatula_contact_test
 }  // namespace filum

@@ -10,7 +10,7 @@
 #include "collision/point_triangle.h"
 
 namespace filum {
-namespace {
+namespace spatula_test {
 
 BladeShape flat_blade() {
   BladeShape b;
@@ -105,5 +105,5 @@ TEST(Spatula, ImpossibleBladesAreRefused) {
   EXPECT_EQ(refused([](BladeShape& b) { b.bends = {{1.0, 0.1, 1e-3}}; }), "bends");
 }
 
-}  // namespace
+}  // namespace spatula_test
 }  // namespace filum

@@ -5,7 +5,7 @@
 #include <vector>
 
 namespace filum {
-namespace {
+namespace step_control_test {
 
 constexpr int kNodes = 31;
 constexpr double kShortest = 1e-5, kLongest = 1e-2;
@@ -74,5 +74,5 @@ TEST(StepControl, EasyStepsKeepTheirLength) {
   EXPECT_EQ(control.repeats(), 0);
 }
 
-}  // namespace
+}  // namespace step_control_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include "physics/implicit_rod.h"
 
 namespace filum {
-namespace {
+namespace thread_grasp_test {
 
 constexpr double kGrip = 0.1;  // [N]
 
@@ -118,5 +118,5 @@ TEST(ThreadGrasp, MaterialCoordinateFindsItsEdge) {
   }
 }
 
-}  // namespace
+}  // namespace thread_grasp_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include <cmath>
 
 namespace filum {
-namespace {
+namespace tissue_law_test {
 
 constexpr double kYoung = 3e3, kPoisson = 0.45, kG = kYoung / (2.0 * (1.0 + kPoisson));
 
@@ -88,5 +88,5 @@ TEST(TissueLaw, OffAddsNothingToTheLastBit) {
   EXPECT_NEAR(b.elements.mean_square(b.stretched(0.1)), 1.5 * 0.01, 1e-12);
 }
 
-}  // namespace
+}  // namespace tissue_law_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 
 using namespace filum;
 
-namespace {
+namespace tube_slice_test {
 
 TEST(TubeSlice, SmallPressureWidensItAsLameSays) {
   const double a = 0.5e-3, b = 0.75e-3, E = 500e3, nu = 0.3, P = 10.0;
@@ -63,4 +63,4 @@ TEST(TubeSlice, EveryElementSoftensByItsOwnPast) {
   }
 }
 
-}  // namespace
+}  // namespace tube_slice_test

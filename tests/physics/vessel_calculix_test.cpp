@@ -15,7 +15,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_calculix_test {
 
 constexpr double kYoung = 500e3, kPoisson = 0.4, kForce = 1e-6;
 
@@ -92,4 +92,4 @@ TEST(VesselCalculix, OvalTubeOfTheSameMesh) {
   EXPECT_NEAR(ours(c) / theirs, 1.0, 0.02) << "ours " << ours(c) << " m, CalculiX " << theirs << " m";
 }
 
-}  // namespace
+}  // namespace vessel_calculix_test

@@ -7,7 +7,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_clamp_test {
 
 TEST(VesselClamp, CutEdgesFaceEachOtherAcrossTheGap) {
   TubeShape shape;
@@ -71,4 +71,4 @@ TEST(VesselClamp, EndToSideTheBevelLiesOnTheOpening) {
   EXPECT_EQ(ends[0], 2 * ends[1]);
 }
 
-}  // namespace
+}  // namespace vessel_clamp_test

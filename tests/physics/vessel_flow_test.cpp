@@ -9,7 +9,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_flow_test {
 
 constexpr double kPi = std::numbers::pi, kRadius = 0.35e-3;
 constexpr int kAround = 48;
@@ -131,4 +131,4 @@ TEST(VesselFlow, TheFurtherForcepsMustHoldUntilItIsFull) {
   EXPECT_EQ(m.stage, Milking::idle);
 }
 
-}  // namespace
+}  // namespace vessel_flow_test

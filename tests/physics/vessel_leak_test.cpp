@@ -9,7 +9,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_leak_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -142,4 +142,4 @@ TEST(VesselLeak, LumenNarrowingAndPoiseuilleFlow) {
   EXPECT_GT(assess_lumen(lumen_rings(mesh, x, 0), area, blood).narrowing, 0.99);
 }
 
-}  // namespace
+}  // namespace vessel_leak_test

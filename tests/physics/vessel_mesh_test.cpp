@@ -12,7 +12,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_mesh_test {
 
 double signed_volume(const Corners& c) {
   double v = 0.0;
@@ -216,4 +216,4 @@ TEST(VesselMesh, BevelledCutIsPlaneAndKeepsTheVolume) {
   }
 }
 
-}  // namespace
+}  // namespace vessel_mesh_test

@@ -9,7 +9,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_element_test {
 
 std::vector<WallLayer> three_layers() {
   WallLaw media;
@@ -160,4 +160,4 @@ TEST(VesselWallElement, LayersAndStress) {
   EXPECT_NEAR(force / by_stress, 1.0, 0.02);
 }
 
-}  // namespace
+}  // namespace vessel_wall_element_test

@@ -8,7 +8,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_factor_test {
 
 struct Sample {
   std::vector<int> slab = {0, 0, 0, 1, 1, 2, 2, 2, 5, 5};  // the last two stand apart
@@ -48,4 +48,4 @@ TEST(VesselWallFactor, RefusesWhatItCannotHold) {
   EXPECT_THROW(SlabFactor(s.slab, s.blocks), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace vessel_wall_factor_test

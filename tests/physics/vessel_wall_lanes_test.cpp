@@ -4,7 +4,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_lanes_test {
 
 template <class N>
 double worst_exp() {
@@ -33,4 +33,4 @@ TEST(VesselWallLanes, LanesAreIndependent) {
   EXPECT_DOUBLE_EQ(root_of(a * a)[3], 2.0);
 }
 
-}  // namespace
+}  // namespace vessel_wall_lanes_test

@@ -8,7 +8,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_pairs_test {
 
 struct Case {
   int n = 40, most = 6;
@@ -112,4 +112,4 @@ TEST(VesselWallPairs, PairsWithoutPositiveCurvatureAndForgottenOnesDoNothing) {
   EXPECT_LT((c.direction(r) - plain).norm(), 1e-5 * plain.norm());
 }
 
-}  // namespace
+}  // namespace vessel_wall_pairs_test

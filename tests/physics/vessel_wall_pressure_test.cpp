@@ -10,7 +10,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_pressure_test {
 
 TEST(VesselWallPressure, PushesOutwardWithTheLumensArea) {
   const VesselMesh mesh = make_tube({});
@@ -54,4 +54,4 @@ TEST(VesselWallPressure, LumenOfAPolygonalTubeWhereverItLies) {
   EXPECT_NEAR(lumen_volume(mesh, 1, mesh.nodes) / exact, 1.0, 1e-9);
 }
 
-}  // namespace
+}  // namespace vessel_wall_pressure_test

@@ -10,7 +10,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_rings_test {
 
 /// Stiffness of a tube of two laws with fibres, on the ground and heavier from ring to ring, each node's numbers outward, along and around.
 struct Tube {
@@ -132,4 +132,4 @@ TEST(VesselWallMatrix, PartsOfBothKinds) {
   EXPECT_LT((matrix.inverse(7, 7) * f.head<3>() - load.segment<3>(21)).norm(), 1e-5f * load.norm());
 }
 
-}  // namespace
+}  // namespace vessel_wall_rings_test

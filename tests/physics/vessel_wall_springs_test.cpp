@@ -10,7 +10,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_springs_test {
 
 /// A made-up positive definite matrix on the graph of a small tube, springs at points of it: against a dense solution.
 TEST(VesselWallSprings, CorrectsToTheSpringsOwnMatrix) {
@@ -70,4 +70,4 @@ TEST(VesselWallSprings, NothingToCorrectWithoutSprings) {
   EXPECT_EQ(x.maxCoeff(), 1.0f);
 }
 
-}  // namespace
+}  // namespace vessel_wall_springs_test

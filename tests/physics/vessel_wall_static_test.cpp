@@ -6,7 +6,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_static_test {
 
 /// A short rubber tube pulled along its axis while its ends may narrow: stress mu (l^2 - 1/l) of an incompressible bar.
 TEST(VesselWallStatic, RubberInUniaxialStretch) {
@@ -52,4 +52,4 @@ TEST(VesselWallStatic, ReportsWhatCannotBeSolved) {
   EXPECT_FALSE(solve_static(mesh, elements, load, x, 1e-10).converged);
 }
 
-}  // namespace
+}  // namespace vessel_wall_static_test

@@ -6,7 +6,7 @@
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_surface_test {
 
 VesselWall plain() {
   TubeShape s;
@@ -94,4 +94,4 @@ TEST(VesselWallSurface, WhatIsGoneIsNotMet) {
   EXPECT_FALSE(wall.crossing(s, a, b).found);
 }
 
-}  // namespace
+}  // namespace vessel_wall_surface_test

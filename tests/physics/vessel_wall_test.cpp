@@ -9,11 +9,11 @@
 #include "base/rng.h"
 #include "physics/vessel_wall_pressure.h"
 #include "physics/vessel_wall_static.h"
-#include "tests/physics/allocation_count.h"
+#include "tests/allocation_count.h"
 
 using namespace filum;
 
-namespace {
+namespace vessel_wall_test {
 
 std::vector<WallLayer> artery() {
   WallLaw law;
@@ -278,4 +278,4 @@ TEST(VesselWall, RefusesMoreLoadsThanItHolds) {
   EXPECT_FALSE(wall.add_load(state, {}, Vec3::Zero()));
 }
 
-}  // namespace
+}  // namespace vessel_wall_test

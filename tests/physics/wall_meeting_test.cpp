@@ -11,7 +11,7 @@
 
 using namespace filum;
 
-namespace {
+namespace wall_meeting_test {
 
 std::vector<WallLayer> soft_wall() {
   WallLaw law;
@@ -150,4 +150,4 @@ TEST(WallMeeting, AnEmptyVeinLiesFlatAndFillsAgain) {
   }
 }
 
-}  // namespace
+}  // namespace wall_meeting_test

@@ -8,7 +8,7 @@
 
 using namespace filum;
 
-namespace {
+namespace wall_overlay_test {
 
 const std::vector<WallLayer> kRubber = {{"wall", 1e-4, WallLaw::hooke(300e3, 0.4)}};
 
@@ -71,4 +71,4 @@ TEST(WallOverlay, PressureOfALumenIsFoundOnItsWallAndNowhereElse) {
   for (const int i : mesh.held) EXPECT_EQ(pressure[static_cast<std::size_t>(i)], 0.0);
 }
 
-}  // namespace
+}  // namespace wall_overlay_test

@@ -9,7 +9,7 @@
 #include "records.h"
 
 namespace filum::reconcile {
-namespace {
+namespace dataset_test {
 
 const std::string kOne = "  - { file: a.csv, protocol: { mode: compression, rate: \"0.1 mm/s\" } }\n";
 
@@ -210,5 +210,5 @@ TEST(Dataset, EveryRigAndEffectOfTheContractIsThere) {
   for (std::size_t i = 0; i < rigs().size(); ++i) EXPECT_EQ(static_cast<std::size_t>(rigs()[i].rig), i);
 }
 
-}  // namespace
+}  // namespace dataset_test
 }  // namespace filum::reconcile

@@ -8,7 +8,7 @@
 #include "reconcile/screen.h"
 
 namespace filum::reconcile {
-namespace {
+namespace fit_test {
 
 /// A thread let out and drawn back four times, twice with each side down; drop and reach read by two instruments with errors of gain of their own.
 Dataset thread_with_gains(double drop, double reach, double noise) {
@@ -101,5 +101,5 @@ TEST(Fit, AScoreTestBesideAGainPromisesWhatTheFitKeeps) {
   EXPECT_NEAR(s.gain / (without.chi2 - with.chi2), 1.0, 0.01);
 }
 
-}  // namespace
+}  // namespace fit_test
 }  // namespace filum::reconcile

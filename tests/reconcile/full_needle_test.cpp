@@ -7,7 +7,7 @@
 #include "reconcile/full_solver.h"
 
 namespace filum::reconcile {
-namespace {
+namespace full_needle_test {
 
 /// In to 10 mm, rest, and out, 300 samples.
 NeedlePath path() {
@@ -111,5 +111,5 @@ TEST(FullNeedle, ALayerHasItsOwnStiffness) {
   EXPECT_NEAR(broke, 7e-3, 0.15e-3);  // found by the simulation: 1.5 mm x 60 N/m over 30 N/m below the face
 }
 
-}  // namespace
+}  // namespace full_needle_test
 }  // namespace filum::reconcile

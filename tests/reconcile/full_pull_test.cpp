@@ -8,7 +8,7 @@
 #include "reconcile/full_solver.h"
 
 namespace filum::reconcile {
-namespace {
+namespace full_pull_test {
 
 TEST(FullPull, LimpThreadFollowsEulerAtEveryAngle) {
   for (const double wrap : {0.5 * std::numbers::pi, std::numbers::pi, 2.0 * std::numbers::pi})
@@ -19,5 +19,5 @@ TEST(FullPull, LimpThreadFollowsEulerAtEveryAngle) {
     }
 }
 
-}  // namespace
+}  // namespace full_pull_test
 }  // namespace filum::reconcile

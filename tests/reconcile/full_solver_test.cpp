@@ -9,7 +9,7 @@
 #include "physics/tissue_law.h"
 
 namespace filum::reconcile {
-namespace {
+namespace full_solver_test {
 
 TEST(FullSolver, RodOfSmallDeflectionDropsByAnEighth) {
   const HangingRod r = hang_rod(0.02, {}, 40);
@@ -181,5 +181,5 @@ TEST(FullSolver, ABladeComesBackWithWhatHasSetAndSoftened) {
   EXPECT_GT(w.unload[2], -0.3 * 0.04);
 }
 
-}  // namespace
+}  // namespace full_solver_test
 }  // namespace filum::reconcile

@@ -10,7 +10,7 @@
 #include "reconcile/full_solver.h"
 
 namespace filum::reconcile {
-namespace {
+namespace full_tube_test {
 
 const TubeWall kTube{0.7e-3, 1.0e-3};
 
@@ -243,5 +243,5 @@ TEST(FullTube, OpeningAngleIsTheSectorsPressure) {
   for (std::size_t i = 1; i < t.slices[0].C.size(); ++i) EXPECT_NEAR(t.slices[0].beyond[i], pressure(k, t.slices[0].C[i], low) - pressure(1.0, t.slices[0].C[i], a), 0.01 * whole) << i;
 }
 
-}  // namespace
+}  // namespace full_tube_test
 }  // namespace filum::reconcile

@@ -6,7 +6,7 @@
 #include "reconcile/result.h"
 
 namespace filum::reconcile {
-namespace {
+namespace hardware_test {
 
 /// A record of 400 samples, changed by `spoil`; what the checks say of it.
 std::vector<std::string> checks(const std::function<void(Eigen::VectorXd& t, Eigen::VectorXd& y)>& spoil) {
@@ -128,5 +128,5 @@ TEST(Hardware, SaysSizesInTheChannelsOwnUnit) {
   EXPECT_EQ(check_units(d, {}).at(0).found, "wanders by 60 mm, expected 0.001 to 20: is the unit wrong by 1000?");
 }
 
-}  // namespace
+}  // namespace hardware_test
 }  // namespace filum::reconcile

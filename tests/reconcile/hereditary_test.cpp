@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace filum::reconcile {
-namespace {
+namespace hereditary_test {
 
 /// Ramp to 1 in `rise` seconds, then held.
 Eigen::VectorXd ramp_and_hold(const Eigen::VectorXd& t, double rise) { return (t.array() / rise).min(1.0).matrix(); }
@@ -47,5 +47,5 @@ TEST(Hereditary, DrainageSlowsWithTheSquareOfTheSize) {
   for (std::size_t i = 0; i < small.tau.size(); ++i) EXPECT_NEAR(large.tau[i] / small.tau[i], 4.0, 1e-12);
 }
 
-}  // namespace
+}  // namespace hereditary_test
 }  // namespace filum::reconcile

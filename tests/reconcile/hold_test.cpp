@@ -11,7 +11,7 @@
 #include "reconcile/report.h"
 
 namespace filum::reconcile {
-namespace {
+namespace hold_test {
 
 using Signal = std::function<std::function<double(double)>(Rng&)>;
 
@@ -182,5 +182,5 @@ TEST(Hold, ProgressIsToldAndItCanBeCancelled) {
   EXPECT_THROW(held(100.0, 2, still, {}, -1e9, options), Cancelled);
 }
 
-}  // namespace
+}  // namespace hold_test
 }  // namespace filum::reconcile

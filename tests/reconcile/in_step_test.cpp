@@ -10,7 +10,7 @@
 #include "reconcile/result.h"
 
 namespace filum::reconcile {
-namespace {
+namespace in_step_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -94,5 +94,5 @@ TEST(InStep, WhatFollowsTheMotionIsNoHum) {
   }
 }
 
-}  // namespace
+}  // namespace in_step_test
 }  // namespace filum::reconcile

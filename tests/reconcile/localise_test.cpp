@@ -8,7 +8,7 @@
 #include "records.h"
 
 namespace filum::reconcile {
-namespace {
+namespace localise_test {
 
 constexpr int kSamples = 400;
 
@@ -95,5 +95,5 @@ TEST(Localise, NoiseAloneStandsOutNowhere) {
   for (const Share& s : shares_of([](double, double, int) { return false; })) EXPECT_LT(std::abs(s.deviations), 4.0) << s.axis << " " << s.bin;
 }
 
-}  // namespace
+}  // namespace localise_test
 }  // namespace filum::reconcile

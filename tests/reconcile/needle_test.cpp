@@ -7,7 +7,7 @@
 #include "reconcile/search.h"
 
 namespace filum::reconcile {
-namespace {
+namespace needle_test {
 
 /// Force of a needle through a membrane at 4.0 mm, k = 100 N/m, pushed to 10 mm at `speed` [m/s], held and drawn out; the sensor lags by
 /// `lag` [s] (exactly, as the drop falls anywhere between two samples), `step` [N] more falls off when the needle stops.
@@ -93,5 +93,5 @@ TEST(Needle, EveryInstantReadOffARecordIsCounted) {
     }
 }
 
-}  // namespace
+}  // namespace needle_test
 }  // namespace filum::reconcile

@@ -7,7 +7,7 @@
 #include "reconcile/report.h"
 
 namespace filum::reconcile {
-namespace {
+namespace next_experiment_test {
 
 constexpr double kLag = 0.4;  // [s], first order
 
@@ -61,5 +61,5 @@ TEST(NextExperiment, WhatItProposesTellsTheRivalsApart) {
   EXPECT_EQ(after.effects[0].effect, Effect::sensor_lag);
 }
 
-}  // namespace
+}  // namespace next_experiment_test
 }  // namespace filum::reconcile

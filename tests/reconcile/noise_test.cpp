@@ -10,7 +10,7 @@
 #include "reconcile/noise.h"
 
 namespace filum::reconcile {
-namespace {
+namespace noise_test {
 
 OutputNoise noise_of(double sigma, double rho, double white) {
   OutputNoise n;
@@ -79,5 +79,5 @@ TEST(Noise, NoShareIsAddedWhereThereIsNone) {
   EXPECT_LE(changed, 2);  // more than 2 of 60 once in 300 times
 }
 
-}  // namespace
+}  // namespace noise_test
 }  // namespace filum::reconcile

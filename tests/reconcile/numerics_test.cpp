@@ -8,7 +8,7 @@
 #include "records.h"
 
 namespace filum::reconcile {
-namespace {
+namespace numerics_test {
 
 const std::string kTrials = "  - { file: a.csv, protocol: { mode: compression, rate: \"1 mm/s\" } }\n";
 
@@ -73,5 +73,5 @@ TEST(Numerics, TailOfChiSquaredIsTheTables) {
   EXPECT_DOUBLE_EQ(chi2_tail(0.0, 4), 1.0);
 }
 
-}  // namespace
+}  // namespace numerics_test
 }  // namespace filum::reconcile

@@ -9,7 +9,7 @@
 #include "reconcile/hereditary.h"
 
 namespace filum::reconcile {
-namespace {
+namespace reference_test {
 
 TEST(Reference, RampThroughOneAndTwoLags) {
   const Eigen::VectorXd t = Eigen::VectorXd::LinSpaced(200, 0.0, 10.0);
@@ -73,5 +73,5 @@ TEST(Reference, ProgramsRelaxationSolvesTheSameEquation) {
   EXPECT_LT((f - 0.35 * q - program).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-}  // namespace
+}  // namespace reference_test
 }  // namespace filum::reconcile

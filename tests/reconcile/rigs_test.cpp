@@ -8,7 +8,7 @@
 #include "reconcile/model.h"
 
 namespace filum::reconcile {
-namespace {
+namespace rigs_test {
 
 Dataset dataset(Rig rig, const std::vector<std::string>& outputs) {
   Dataset d;
@@ -217,5 +217,5 @@ TEST(Rigs, DrainageIsKnownByTheSizeThatVaries) {
   EXPECT_EQ(unknown({{5e-3, 5e-3}, {5e-3, 2e-3}}, "shear"), std::set<int>{});  // shear keeps the volume: what relaxes there is the solid
 }
 
-}  // namespace
+}  // namespace rigs_test
 }  // namespace filum::reconcile

@@ -8,7 +8,7 @@
 #include "records.h"
 
 namespace filum::reconcile {
-namespace {
+namespace screen_test {
 
 /// Of a block pressed at one rate, n samples over 20 s.
 std::vector<NotTestable> lint_of_block(int n, const std::string& trials) {
@@ -53,5 +53,5 @@ TEST(Screen, WhatTheInputsHideCannotBeNamed) {
   EXPECT_TRUE(find(all, Effect::rig_compliance)->hidden) << find(all, Effect::rig_compliance)->why;
 }
 
-}  // namespace
+}  // namespace screen_test
 }  // namespace filum::reconcile

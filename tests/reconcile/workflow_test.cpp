@@ -12,7 +12,7 @@
 #include "reconcile/report.h"
 
 namespace filum::reconcile {
-namespace {
+namespace workflow_test {
 
 const std::string kTrials =
     "  - { file: a.csv, protocol: { mode: compression, rate: \"1 mm/s\" }, repeat: A }\n  - { file: b.csv, protocol: { mode: compression, rate: \"1 mm/s\" }, repeat: A }\n"
@@ -208,5 +208,5 @@ TEST(Workflow, ThreadsDoNotChangeTheResult) {
   EXPECT_EQ(report_json(d, a).dump(), report_json(d, b).dump());
 }
 
-}  // namespace
+}  // namespace workflow_test
 }  // namespace filum::reconcile

@@ -6,7 +6,7 @@
 #include <thread>
 
 namespace filum {
-namespace {
+namespace browser_test {
 
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
@@ -85,5 +85,5 @@ TEST_F(BrowserTest, OneThatNeverReadsIsLetGoAndItsEndIsToldOnce) {
   EXPECT_EQ(ended_, 1);
 }
 
-}  // namespace
+}  // namespace browser_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include "schema_check.h"
 
 namespace filum {
-namespace {
+namespace client_message_test {
 
 using nlohmann::json;
 
@@ -117,5 +117,5 @@ TEST(ClientMessage, AgreesWithTheSchema) {
   EXPECT_GT(compared, 200);
 }
 
-}  // namespace
+}  // namespace client_message_test
 }  // namespace filum

@@ -5,7 +5,7 @@
 #include <thread>
 
 namespace filum {
-namespace {
+namespace connection_test {
 
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
@@ -101,5 +101,5 @@ TEST_F(ConnectionTest, HandsTheSocketOver) {
   EXPECT_EQ(slot_.use_count(), 1);
 }
 
-}  // namespace
+}  // namespace connection_test
 }  // namespace filum

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace control_test {
 
 TEST(Control, FirstOneControlsTheOthersWatch) {
   Control control;
@@ -67,5 +67,5 @@ TEST(FrameCredit, ForgedAndRepeatedAcksGiveNothing) {
   EXPECT_FALSE(credit.available());
 }
 
-}  // namespace
+}  // namespace control_test
 }  // namespace filum

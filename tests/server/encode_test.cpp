@@ -7,7 +7,7 @@
 #include "schema_check.h"
 
 namespace filum {
-namespace {
+namespace encode_test {
 
 using nlohmann::json;
 
@@ -127,5 +127,5 @@ TEST(SchemaCheck, FindsFaults) {
   EXPECT_NE(schema.fault(error, "ServerMessage"), "");
 }
 
-}  // namespace
+}  // namespace encode_test
 }  // namespace filum

@@ -3,7 +3,7 @@
 #include "server/server.h"
 
 namespace filum {
-namespace {
+namespace origin_test {
 
 TEST(Origin, SameHostAndPortOnly) {
   EXPECT_TRUE(origin_allowed("http://127.0.0.1:8137", "127.0.0.1:8137", true));
@@ -21,5 +21,5 @@ TEST(Origin, ForeignNamePointedAtThisMachineIsRefused) {
   EXPECT_TRUE(origin_allowed("http://classroom-1:8137", "classroom-1:8137", false));
 }
 
-}  // namespace
+}  // namespace origin_test
 }  // namespace filum

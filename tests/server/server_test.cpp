@@ -14,7 +14,7 @@
 #include "tests/server/client.h"
 
 namespace filum {
-namespace {
+namespace server_test {
 
 namespace beast = boost::beast;
 namespace http = beast::http;
@@ -274,5 +274,5 @@ TEST_F(ServerTest, StopsWithBrowsersConnected) {
   EXPECT_THROW(while (true) client.hear(), beast::system_error);
 }
 
-}  // namespace
+}  // namespace server_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include <fstream>
 
 namespace filum {
-namespace {
+namespace static_files_test {
 
 namespace fs = std::filesystem;
 
@@ -59,5 +59,5 @@ TEST(MediaType, ByExtension) {
   EXPECT_EQ(media_type("x.unknown"), "application/octet-stream");
 }
 
-}  // namespace
+}  // namespace static_files_test
 }  // namespace filum

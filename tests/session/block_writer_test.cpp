@@ -9,7 +9,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace block_writer_test {
 
 using synthetic::Folder;
 
@@ -58,5 +58,5 @@ TEST(BlockWriter, ARefusedCommitLeavesNothingAndCanBeRepeated) {
   EXPECT_EQ(n, 5u);
 }
 
-}  // namespace
+}  // namespace block_writer_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace database_test {
 
 using synthetic::Folder;
 
@@ -121,5 +121,5 @@ TEST(Database, ReasonsLeaveOutTheStatement) {
   }
 }
 
-}  // namespace
+}  // namespace database_test
 }  // namespace filum

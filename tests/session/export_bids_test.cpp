@@ -11,7 +11,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace export_bids_test {
 
 namespace fs = std::filesystem;
 
@@ -94,5 +94,5 @@ TEST(ExportBids, TheValidatorFindsNoErrors) {
   EXPECT_TRUE(json["issues"]["errors"].empty()) << json["issues"]["errors"].dump(1);
 }
 
-}  // namespace
+}  // namespace export_bids_test
 }  // namespace filum

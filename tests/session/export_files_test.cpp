@@ -11,7 +11,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace export_files_test {
 
 using Cells = std::vector<std::vector<std::string>>;
 
@@ -171,5 +171,5 @@ TEST(Export, AFolderThatCannotBeWrittenIsAnInputError) {
   EXPECT_THROW(export_hdf5(odd_tables(), synthetic::meta(), folder.file("locked")), InputError);
 }
 
-}  // namespace
+}  // namespace export_files_test
 }  // namespace filum

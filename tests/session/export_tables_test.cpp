@@ -9,7 +9,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace export_tables_test {
 
 const Column& column(const Table& table, const std::string& name) {
   for (const Column& candidate : table.columns)
@@ -124,5 +124,5 @@ TEST_F(ExportTables, EveryColumnHasItsOwnNameAUnitAndAMeaning) {
   }
 }
 
-}  // namespace
+}  // namespace export_tables_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace ratings_test {
 
 using synthetic::Folder;
 
@@ -57,5 +57,5 @@ TEST(Ratings, ADamagedFileIsRefusedNotReplaced) {
   EXPECT_EQ(text, "rubbish");
 }
 
-}  // namespace
+}  // namespace ratings_test
 }  // namespace filum

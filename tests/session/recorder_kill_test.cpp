@@ -16,7 +16,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace recorder_kill_test {
 
 constexpr int kKills = 50;
 constexpr std::uint64_t kMostSteps = 1000;
@@ -114,5 +114,5 @@ TEST(RecorderKill, AllButTheLastHundredMillisecondsSurviveFiftyKills) {
   munmap(progress, sizeof(Progress));
 }
 
-}  // namespace
+}  // namespace recorder_kill_test
 }  // namespace filum

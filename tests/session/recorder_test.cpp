@@ -12,7 +12,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace recorder_test {
 
 using synthetic::Folder;
 
@@ -198,5 +198,5 @@ TEST(Recorder, TheLastScoreCounts) {
   EXPECT_EQ(recording.score()->total, 90.0);
 }
 
-}  // namespace
+}  // namespace recorder_test
 }  // namespace filum

@@ -13,7 +13,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace recording_reader_test {
 
 using synthetic::Folder;
 
@@ -328,5 +328,5 @@ TEST(RecordingReader, SourcesOfAProjectAreFoundByPath) {
   EXPECT_EQ(sources[2].text, "b: 1\n");
 }
 
-}  // namespace
+}  // namespace recording_reader_test
 }  // namespace filum

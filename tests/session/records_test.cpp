@@ -7,7 +7,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace records_test {
 
 TEST(Records, StepsSurvivePackingBitForBit) {
   std::vector<StepRecord> records;
@@ -100,5 +100,5 @@ TEST(Records, ParticipantsAreCodes) {
     EXPECT_FALSE(is_participant_code(bad)) << bad;
 }
 
-}  // namespace
+}  // namespace records_test
 }  // namespace filum

@@ -12,7 +12,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace replay_test {
 
 constexpr std::uint64_t kSteps = 200;
 constexpr std::uint64_t kHashEvery = 20;
@@ -163,5 +163,5 @@ TEST(Replay, SimulatedTableHasARowForEveryStep) {
   EXPECT_NE(table.columns.back().unit, "");
 }
 
-}  // namespace
+}  // namespace replay_test
 }  // namespace filum

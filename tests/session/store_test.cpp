@@ -13,7 +13,7 @@
 #include "tests/session/synthetic.h"
 
 namespace filum {
-namespace {
+namespace store_test {
 
 using synthetic::Folder;
 
@@ -245,5 +245,5 @@ TEST(Store, TheDefaultFolderFollowsTheEnvironment) {
   EXPECT_EQ(default_store_folder(), "/home/x/.local/share/filum");
 }
 
-}  // namespace
+}  // namespace store_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include "tests/tracker/board_views.h"
 
 namespace filum {
-namespace {
+namespace camera_guide_test {
 
 /// Shows the board at rest, six pictures a second.
 class Shown {
@@ -96,5 +96,5 @@ TEST(CameraGuide, TiltsAreToldFromTheBoardsSides) {
   }
 }
 
-}  // namespace
+}  // namespace camera_guide_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include "tests/tracker/board_views.h"
 
 namespace filum {
-namespace {
+namespace camera_model_test {
 
 std::vector<cv::Mat> views(double tilt) {
   std::vector<cv::Mat> pictures;
@@ -62,5 +62,5 @@ TEST(CameraModel, AFileWithNonsenseIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace camera_model_test
 }  // namespace filum

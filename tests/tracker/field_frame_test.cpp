@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace field_frame_test {
 
 Pose table() {
   Pose X;
@@ -91,5 +91,5 @@ TEST(Pivot, RefusesWhatDoesNotTellIt) {
   EXPECT_THROW(pivot_of(slipping), InputError) << "the tip has left its hollow";
 }
 
-}  // namespace
+}  // namespace field_frame_test
 }  // namespace filum

@@ -18,7 +18,7 @@
 #include "tracker/pose_log.h"
 
 namespace filum {
-namespace {
+namespace marker_tracker_test {
 
 constexpr double kSide = 12e-3;  // [m]
 
@@ -236,5 +236,5 @@ TEST(MarkerTracker, TheSheetHoldsTheMarkers) {
   EXPECT_NE(svg.find("3, 12 mm"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace marker_tracker_test
 }  // namespace filum

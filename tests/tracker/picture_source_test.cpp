@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace picture_source_test {
 
 namespace fs = std::filesystem;
 
@@ -84,5 +84,5 @@ TEST_F(PictureSourceTest, ADamagedVideoEndsAndDoesNotCrash) {
   }
 }
 
-}  // namespace
+}  // namespace picture_source_test
 }  // namespace filum

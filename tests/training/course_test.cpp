@@ -5,7 +5,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace course_test {
 
 std::vector<Chapter> parsed(const std::string& text) { return parse_course(YamlNode::parse(text, "course.yaml")); }
 
@@ -38,5 +38,5 @@ TEST(Course, WhatIsWrongIsRefused) {
 }
 
 
-}  // namespace
+}  // namespace course_test
 }  // namespace filum

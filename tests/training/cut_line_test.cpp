@@ -7,7 +7,7 @@
 #include "training/stitch_guide.h"
 
 namespace filum {
-namespace {
+namespace cut_line_test {
 
 using testing_shapes::oblique_edges;
 using testing_shapes::on_ellipse;
@@ -112,5 +112,5 @@ TEST(CutLine, LapsesOfStitchesEndToSide) {
   EXPECT_STREQ(found[1].name, "disrupted-line");
 }
 
-}  // namespace
+}  // namespace cut_line_test
 }  // namespace filum

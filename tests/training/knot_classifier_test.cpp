@@ -7,7 +7,7 @@
 #include "tests/training/knot_shapes.h"
 
 namespace filum {
-namespace {
+namespace knot_classifier_test {
 
 using namespace shapes;
 
@@ -168,5 +168,5 @@ TEST(KnotClassifier, SameInputSameReport) {
             classify_knot(nodes, kRadius, nullptr).n_crossings);
 }
 
-}  // namespace
+}  // namespace knot_classifier_test
 }  // namespace filum

@@ -5,7 +5,7 @@
 #include "tests/training/knot_shapes.h"
 
 namespace filum {
-namespace {
+namespace knot_closure_test {
 
 using namespace shapes;
 
@@ -49,5 +49,5 @@ TEST(KnotClosure, TheWayRoundStaysOutsideTheThread) {
   }
 }
 
-}  // namespace
+}  // namespace knot_closure_test
 }  // namespace filum

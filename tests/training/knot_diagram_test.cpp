@@ -8,7 +8,7 @@
 #include "training/knot_simplify.h"
 
 namespace filum {
-namespace {
+namespace knot_diagram_test {
 
 /// A closed curve whose picture from above is a figure of eight with one crossing.
 GridPolygon figure_of_eight(double lift) {
@@ -67,5 +67,5 @@ TEST(KnotDiagram, WritheOfAPlanarPictureOfATrefoilIsThree) {
   EXPECT_EQ(diagram.code.size(), 6u);
 }
 
-}  // namespace
+}  // namespace knot_diagram_test
 }  // namespace filum

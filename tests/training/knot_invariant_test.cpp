@@ -6,7 +6,7 @@
 #include <map>
 
 namespace filum {
-namespace {
+namespace knot_invariant_test {
 
 /// Diagram of a closed braid (it must close to one component), crossing by crossing.
 KnotDiagram braid(int strands, const std::vector<int>& word) {
@@ -117,5 +117,5 @@ TEST(KnotInvariant, NoCrossingsIsTheUnknot) {
   EXPECT_EQ(jones_polynomial(braid(3, {1, -2})), Laurent::monomial(1, 0));
 }
 
-}  // namespace
+}  // namespace knot_invariant_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include "training/knot_invariant.h"
 
 namespace filum {
-namespace {
+namespace knot_shape_test {
 
 using namespace shapes;
 
@@ -74,5 +74,5 @@ TEST(KnotShape, LooseKnotsAreNotJudged) {
   EXPECT_NE(report.note.find("loose"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace knot_shape_test
 }  // namespace filum

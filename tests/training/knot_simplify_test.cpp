@@ -7,7 +7,7 @@
 #include "training/knot_invariant.h"
 
 namespace filum {
-namespace {
+namespace knot_simplify_test {
 
 using namespace shapes;
 
@@ -76,5 +76,5 @@ TEST(KnotSimplify, HardUnknotsStayHardButHaveTrivialPolynomial) {
   EXPECT_EQ(alexander_polynomial(diagram), Laurent::monomial(1, 0));
 }
 
-}  // namespace
+}  // namespace knot_simplify_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include "training/knot_invariant.h"
 
 namespace filum {
-namespace {
+namespace knot_table_test {
 
 TEST(KnotTable, FindsTheThrowsOfASum) {
   EXPECT_EQ(throws_of(jones_torus(3) * jones_torus(-3)), (std::vector<int>{3, -3}));
@@ -60,5 +60,5 @@ TEST(KnotTable, NotationAndClasses) {
   EXPECT_EQ(class_of({5}, true), "other");
 }
 
-}  // namespace
+}  // namespace knot_table_test
 }  // namespace filum

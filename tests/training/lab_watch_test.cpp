@@ -8,7 +8,7 @@
 #include "training/task_session.h"
 
 namespace filum {
-namespace {
+namespace lab_watch_test {
 
 constexpr double kDt = 2e-3;  // [s]
 
@@ -194,5 +194,5 @@ TEST(LabWatch, AHoldGivenUpEarlyGetsNoPoints) {
   EXPECT_NE(r.items.front().why.find("not all steps were done"), std::string::npos) << r.items.front().why;
 }
 
-}  // namespace
+}  // namespace lab_watch_test
 }  // namespace filum

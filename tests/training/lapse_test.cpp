@@ -7,7 +7,7 @@
 #include <string>
 
 namespace filum {
-namespace {
+namespace lapse_test {
 
 constexpr double kThickness = 0.15e-3;
 
@@ -268,5 +268,5 @@ TEST(Lapse, AKnotWithSlackIsLooseAndToldOnce) {
   EXPECT_EQ(found.size(), 1u) << "its edges stand apart too";
 }
 
-}  // namespace
+}  // namespace lapse_test
 }  // namespace filum

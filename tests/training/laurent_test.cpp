@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace filum {
-namespace {
+namespace laurent_test {
 
 TEST(Laurent, AddsMultipliesAndDividesExactly) {
   const Laurent a(-2, {1, 0, -3}), b(1, {1, 1});
@@ -37,5 +37,5 @@ TEST(Laurent, Text) {
   EXPECT_EQ(Laurent(0, {-1, 2, -12}).text("A"), "-1 + 2 A - 12 A^2");
 }
 
-}  // namespace
+}  // namespace laurent_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace filum {
-namespace {
+namespace metrics_test {
 
 std::vector<double> sampled(double begin, double end, double fs, double (*f)(double)) {
   std::vector<double> x;
@@ -159,5 +159,5 @@ TEST(Metrics, Quartiles) {
   EXPECT_TRUE(std::isnan(spread_of({}).median));
 }
 
-}  // namespace
+}  // namespace metrics_test
 }  // namespace filum

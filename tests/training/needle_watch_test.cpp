@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace filum {
-namespace {
+namespace needle_watch_test {
 
 constexpr double kDt = 2e-3, kRightAngle = 1.5707963267948966;
 
@@ -210,5 +210,5 @@ TEST(NeedleWatch, CountsTakesDropsAndWholeStitches) {
   EXPECT_TRUE(std::isnan(needle_value(Measure::needle_angle, r)));
 }
 
-}  // namespace
+}  // namespace needle_watch_test
 }  // namespace filum

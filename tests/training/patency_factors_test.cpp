@@ -5,7 +5,7 @@
 #include <string>
 
 namespace filum {
-namespace {
+namespace patency_factors_test {
 
 const PatencyFactor& of(const std::vector<PatencyFactor>& all, const std::string& name) {
   for (const PatencyFactor& f : all)
@@ -34,5 +34,5 @@ TEST(PatencyFactors, AreNamedWithTheirNumberAndNothingIsConcluded) {
   EXPECT_FALSE(of(all, "not-patent").raised);
 }
 
-}  // namespace
+}  // namespace patency_factors_test
 }  // namespace filum

@@ -10,7 +10,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace pressure_test {
 
 std::string shipped_text() {
   std::ifstream in(std::string(FILUM_SOURCE_DIR) + "/models/brain/pressure-limits.yaml");
@@ -128,5 +128,5 @@ TEST(Pressure, LimitsOutOfOrderAreRefused) {
   EXPECT_NE(refused("hysteresis", "hystersis"), "");
 }
 
-}  // namespace
+}  // namespace pressure_test
 }  // namespace filum

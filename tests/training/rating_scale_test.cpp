@@ -7,7 +7,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace rating_scale_test {
 
 RatingScale mars10() { return load_rating_scale(std::string(FILUM_SOURCE_DIR) + "/curricula/scales/mars10.yaml"); }
 
@@ -79,5 +79,5 @@ TEST(RatingScale, RefusesAScaleThatSaysTwoThings) {
   EXPECT_THROW(parse_rating_scale(YamlNode::parse(head + criterion, "f")), InputError);
 }
 
-}  // namespace
+}  // namespace rating_scale_test
 }  // namespace filum

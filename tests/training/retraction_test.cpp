@@ -11,7 +11,7 @@
 #include "training/task_session.h"
 
 namespace filum {
-namespace {
+namespace retraction_test {
 
 std::string task_file(const std::string& name) { return std::string(FILUM_SOURCE_DIR) + "/curricula/" + name + "/task.yaml"; }
 
@@ -152,5 +152,5 @@ TEST(Retraction, GoalsThatAskForNothingAreRefused) {
   EXPECT_THROW(parse_goal(YamlNode::parse("{ kind: squeeze, for: \"3 s\" }", "t")), InputError);
 }
 
-}  // namespace
+}  // namespace retraction_test
 }  // namespace filum

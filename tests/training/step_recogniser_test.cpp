@@ -7,7 +7,7 @@
 #include "tests/training/scripted_scene.h"
 
 namespace filum {
-namespace {
+namespace step_recogniser_test {
 
 using namespace shapes;
 
@@ -149,5 +149,5 @@ TEST(StepRecogniser, SurvivesNonsense) {
   EXPECT_EQ(w.recogniser.step(), 0);
 }
 
-}  // namespace
+}  // namespace step_recogniser_test
 }  // namespace filum

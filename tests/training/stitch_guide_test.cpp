@@ -8,7 +8,7 @@
 #include "oblique_edges.h"
 
 namespace filum {
-namespace {
+namespace stitch_guide_test {
 
 NeedleDescription needle() {
   NeedleDescription n;
@@ -110,5 +110,5 @@ TEST(StitchGuide, NothingWithoutTissueOrNeedle) {
   EXPECT_TRUE(stitch_guides(vessel(), {}, {}).empty());
 }
 
-}  // namespace
+}  // namespace stitch_guide_test
 }  // namespace filum

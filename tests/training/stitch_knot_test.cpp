@@ -9,7 +9,7 @@
 #include "training/needle_watch.h"
 
 namespace filum {
-namespace {
+namespace stitch_knot_test {
 
 constexpr double kTau = 2.0 * std::numbers::pi;
 
@@ -207,5 +207,5 @@ TEST(StitchKnot, EveryPieceOfTheThreadHasItsOwnKnot) {
   EXPECT_EQ(knots_in_tissue(o).size(), 1u) << "one thread, one look";
 }
 
-}  // namespace
+}  // namespace stitch_knot_test
 }  // namespace filum

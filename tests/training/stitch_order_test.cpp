@@ -11,7 +11,7 @@
 #include "training/task.h"
 
 namespace filum {
-namespace {
+namespace stitch_order_test {
 
 constexpr double kDegree = std::numbers::pi / 180.0, kRadius = 0.6e-3;
 
@@ -234,5 +234,5 @@ TEST(StitchOrder, StitchesOutOfTurnDoNotPass) {
   }
 }
 
-}  // namespace
+}  // namespace stitch_order_test
 }  // namespace filum

@@ -11,7 +11,7 @@
 #include "training/result_json.h"
 
 namespace filum {
-namespace {
+namespace task_session_test {
 
 using namespace shapes;
 
@@ -251,5 +251,5 @@ TEST(TaskSession, SameObservationsSameResult) {
   EXPECT_EQ(result_json(a.session.finish(kHeld)), result_json(b.session.finish(kHeld)));
 }
 
-}  // namespace
+}  // namespace task_session_test
 }  // namespace filum

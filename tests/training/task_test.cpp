@@ -10,7 +10,7 @@
 #include "training/needle_task.h"
 
 namespace filum {
-namespace {
+namespace task_test {
 
 const std::string kMinimal = R"(format: filum-task/1
 name: t
@@ -120,5 +120,5 @@ TEST(Task, BandIsFullInsideZeroOutsideAndStraightBetween) {
   EXPECT_EQ(step.share(0.1), 0.0);
 }
 
-}  // namespace
+}  // namespace task_test
 }  // namespace filum

@@ -10,7 +10,7 @@
 #include "rendered.h"
 
 namespace filum {
-namespace {
+namespace tracks_test {
 
 class Tracks : public ::testing::Test {
  protected:
@@ -139,5 +139,5 @@ TEST_F(Tracks, RefusesWhatIsNoVideoAndPointsWithoutPattern) {
   EXPECT_THROW(track_video({file("a.avi"), {{3, 3}}, 21}), InputError);
 }
 
-}  // namespace
+}  // namespace tracks_test
 }  // namespace filum

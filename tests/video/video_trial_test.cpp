@@ -11,7 +11,7 @@
 #include "tests/reconcile/records.h"
 
 namespace filum::reconcile {
-namespace {
+namespace video_trial_test {
 
 constexpr double kScale = 50e-6;  // [m], of a pixel
 
@@ -180,5 +180,5 @@ TEST(VideoTrial, RefusesWithWhatWasExpected) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace video_trial_test
 }  // namespace filum::reconcile

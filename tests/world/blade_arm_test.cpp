@@ -6,7 +6,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace blade_arm_test {
 
 BrainModel one_blade(bool keeps_force) {
   BrainModel m;
@@ -132,5 +132,5 @@ TEST(BladeArm, KeepsItsForceOnRelaxingTissue) {
   EXPECT_NEAR(world.observation().brain.blades[0].force_W.norm(), locked, 0.1 * locked);
 }
 
-}  // namespace
+}  // namespace blade_arm_test
 }  // namespace filum

@@ -10,7 +10,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace blood_flow_test {
 
 constexpr double kMmHg = 133.322;
 
@@ -144,5 +144,5 @@ TEST(BloodFlow, ForcepsPressTheVesselShutStripItAndLetGo) {
   EXPECT_EQ(count(seen, "milking-refilled"), 0) << "the cut is open: no pressure behind it";
 }
 
-}  // namespace
+}  // namespace blood_flow_test
 }  // namespace filum

@@ -15,7 +15,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace brain_scene_test {
 
 std::shared_ptr<const Model> scene(const std::string& task) { return load_model(FILUM_SOURCE_DIR, task); }
 
@@ -195,5 +195,5 @@ TEST(BrainScene, ImpossibleTissueIsRefusedByField) {
   EXPECT_PRED2(names, refused("reach: \"6.5 mm\"", "reach: \"6.5 mm\"" + vein), "cortex");
 }
 
-}  // namespace
+}  // namespace brain_scene_test
 }  // namespace filum

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace filum {
-namespace {
+namespace brain_section_test {
 
 double area_of(const BrainSection& cut, const Points& x) {
   double area = 0.0;
@@ -48,5 +48,5 @@ TEST(BrainSection, VonMisesIsTheUniaxialStressAndNothingUnderPressure) {
   EXPECT_NEAR(von_mises(shear), 2.0 * std::sqrt(3.0), 1e-12);
 }
 
-}  // namespace
+}  // namespace brain_section_test
 }  // namespace filum

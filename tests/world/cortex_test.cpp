@@ -9,7 +9,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace cortex_test {
 
 CortexShape fissured() {
   CortexShape s;
@@ -75,5 +75,5 @@ TEST(Cortex, ImpossibleSizesAreRefused) {
   EXPECT_THROW(make_cortex(s, "cortex"), InputError);
 }
 
-}  // namespace
+}  // namespace cortex_test
 }  // namespace filum

@@ -9,7 +9,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace end_to_side_test {
 
 std::shared_ptr<const Model> scene() {
   static const auto model = load_model(FILUM_SOURCE_DIR, "end-to-side");
@@ -114,5 +114,5 @@ TEST(EndToSide, BloodComesDownTheVesselAndOnThroughTheStump) {
   EXPECT_GT(b.lumen_length, 2.2e-3 + 2.4e-3);
 }
 
-}  // namespace
+}  // namespace end_to_side_test
 }  // namespace filum

@@ -8,7 +8,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace falx_test {
 
 RigidSurface flat_blade() {
   BladeShape shape;
@@ -113,5 +113,5 @@ TEST(Falx, TheHandFeelsItInTheScene) {
   EXPECT_NEAR(world.observation().tools[0].f_T_W.y() - world.observation().brain.blades[0].force_W.y(), -kFalxHold * (3e-3 + kFalxClearance), 1e-6);
 }
 
-}  // namespace
+}  // namespace falx_test
 }  // namespace filum

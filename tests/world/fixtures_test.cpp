@@ -7,7 +7,7 @@
 #include "world/scene_file.h"
 
 namespace filum {
-namespace {
+namespace fixtures_test {
 
 TEST(Fixtures, BarsAndSheetStandWhereTheSceneSays) {
   const auto model = load_model(FILUM_SOURCE_DIR, "knot-square", "");
@@ -43,5 +43,5 @@ TEST(Fixtures, PostGripsTheThreadWhereItPassesTheSlit) {
   EXPECT_NEAR(arc_on_post(*model, moved), to_slit + 2e-3, 1e-5);
 }
 
-}  // namespace
+}  // namespace fixtures_test
 }  // namespace filum

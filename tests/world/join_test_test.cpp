@@ -9,7 +9,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace join_test_test {
 
 std::shared_ptr<const Model> stumps() {
   static const auto model = load_model(FILUM_SOURCE_DIR, "vessel-stitch");
@@ -60,5 +60,5 @@ TEST(JoinTest, EdgesThatReachPastEachOtherAreMeasured) {
   EXPECT_NEAR(edge_overlap(vessel, x), 0.2e-3, 1e-9);
 }
 
-}  // namespace
+}  // namespace join_test_test
 }  // namespace filum

@@ -13,7 +13,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace measured_model_test {
 
 /// A model file in a folder of its own, gone with the test.
 class MeasuredModelTest : public testing::Test {
@@ -193,5 +193,5 @@ TEST_F(MeasuredModelTest, WhatASceneCannotShowIsRefusedByName) {
   EXPECT_NE(refused("press-to-target", file("tissue-block", "{}", "\n  - { name: viscoelastic-relaxation, parameters: { g1: { value: \"0.7\" }, tau1: { value: \"1 s\" }, g2: { value: \"0.4\" }, tau2: { value: \"9 s\" } } }")), "");
 }
 
-}  // namespace
+}  // namespace measured_model_test
 }  // namespace filum

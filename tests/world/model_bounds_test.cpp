@@ -20,7 +20,7 @@
 #include "world/wall_file.h"
 
 namespace filum {
-namespace {
+namespace model_bounds_test {
 
 namespace fs = std::filesystem;
 
@@ -143,5 +143,5 @@ TEST_F(ModelBounds, ScenesWithTissue) {
   }
 }
 
-}  // namespace
+}  // namespace model_bounds_test
 }  // namespace filum

@@ -7,7 +7,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace model_file_test {
 
 class ModelFile : public testing::Test {
  protected:
@@ -79,5 +79,5 @@ TEST_F(ModelFile, PoseIsARotationWithTheHandleAlongZ) {
   EXPECT_EQ(refused([&] { read_pose(f.map("b")); }), "b.opening");
 }
 
-}  // namespace
+}  // namespace model_file_test
 }  // namespace filum

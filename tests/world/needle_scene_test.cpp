@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <string>
 
-#include "tests/physics/allocation_count.h"
+#include "tests/allocation_count.h"
 #include "world/needle_model.h"
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace needle_scene_test {
 
 std::shared_ptr<const Model> scene() {
   static const auto model = load_model(FILUM_SOURCE_DIR, "needle-loading");
@@ -87,5 +87,5 @@ TEST(NeedleScene, SnapshotGoesOnBitEqualAndStepsAllocateNothing) {
   EXPECT_LE(used, allocations - start + 5);
 }
 
-}  // namespace
+}  // namespace needle_scene_test
 }  // namespace filum

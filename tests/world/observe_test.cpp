@@ -6,7 +6,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace observe_test {
 
 struct Seen {
   std::shared_ptr<const Model> model = load_model(FILUM_SOURCE_DIR, "knot-square", "");
@@ -91,5 +91,5 @@ TEST(Observe, ToolsAsSimulatedAndAsCommanded) {
   EXPECT_EQ(v.o.tools[0].grasped_edge, -1);
 }
 
-}  // namespace
+}  // namespace observe_test
 }  // namespace filum

@@ -10,7 +10,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace pull_test_test {
 
 /// Points evenly spaced along the polyline, its corners rounded.
 Points even_and_smooth(const Points& p, double spacing) {
@@ -150,5 +150,5 @@ TEST(PullTest, SameStateGivesTheSameReportAndStaysAsItWas) {
   EXPECT_EQ(scene.state.thread.n, before.thread.n);
 }
 
-}  // namespace
+}  // namespace pull_test_test
 }  // namespace filum

@@ -10,7 +10,7 @@
 #include "base/error.h"
 
 namespace filum {
-namespace {
+namespace scene_file_test {
 
 namespace fs = std::filesystem;
 
@@ -217,5 +217,5 @@ TEST_F(SceneFile, MissingModelFilesAreNamed) {
   }
 }
 
-}  // namespace
+}  // namespace scene_file_test
 }  // namespace filum

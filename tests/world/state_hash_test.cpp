@@ -8,7 +8,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace state_hash_test {
 
 State sample() {
   State s = World(load_model(FILUM_SOURCE_DIR, "knot-square")).state();
@@ -70,5 +70,5 @@ TEST(StateHash, CopiesAreEqualAndUnusedCapacityIsNotSeen) {
   EXPECT_EQ(hash_state(copy), hash_state(s));
 }
 
-}  // namespace
+}  // namespace state_hash_test
 }  // namespace filum

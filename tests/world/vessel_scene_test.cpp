@@ -11,7 +11,7 @@
 #include "world/world.h"
 
 namespace filum {
-namespace {
+namespace vessel_scene_test {
 
 std::shared_ptr<const Model> scene() {
   static const auto model = load_model(FILUM_SOURCE_DIR, "card-stitches");
@@ -194,5 +194,5 @@ TEST(VesselScene, StumpsSurviveWildHands) {
   }
 }
 
-}  // namespace
+}  // namespace vessel_scene_test
 }  // namespace filum

@@ -11,7 +11,7 @@
 
 using namespace filum;
 
-namespace {
+namespace wall_file_test {
 
 const std::string kFolder = std::string(FILUM_SOURCE_DIR) + "/models/vessel/";
 
@@ -105,4 +105,4 @@ TEST(WallFile, RefusesWhatIsWrong) {
   }
 }
 
-}  // namespace
+}  // namespace wall_file_test

@@ -7,12 +7,12 @@
 #include <limits>
 #include <string>
 
-#include "tests/physics/allocation_count.h"
+#include "tests/allocation_count.h"
 #include "world/model.h"
 #include "world/state.h"
 
 namespace filum {
-namespace {
+namespace world_test {
 
 std::shared_ptr<const Model> scene() {
   static const auto model = load_model(FILUM_SOURCE_DIR, "knot-square");
@@ -241,5 +241,5 @@ TEST(World, StepOfOursAllocatesNothing) {
   EXPECT_GT(allocations, start + 5) << "the counter works";
 }
 
-}  // namespace
+}  // namespace world_test
 }  // namespace filum
