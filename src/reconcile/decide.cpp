@@ -419,6 +419,7 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   r.numerics = solver_error(fitter, winner != nullptr ? *winner : search.base());
   r.numerics.sensitivities = check_sensitivities(fitter, winner != nullptr ? *winner : search.base());
   r.noise = fitter.noise();
+  r.starts = search.baseline();
   r.dispersion = search.dispersion();
   r.before = search.base();
   r.after = winner != nullptr ? *winner : search.base();

@@ -169,7 +169,28 @@ void heat(const Dataset& d, const Result& r, std::ostringstream& s) {
   s << "</table>\n";
 }
 
-void checks(const Result& r, std::ostringstream& s) {
+/// Whether the baseline was lucky with its start.
+void starts(const Dataset& d, const Result& r, std::ostringstream& s) {
+  const BaselineSummary& b = r.starts;
+  if (b.starts.empty()) return;
+  double best = INFINITY;
+  for (const BaselineStart& x : b.starts) best = std::min(best, x.chi2);
+  s << "<h2>Starts of the baseline</h2><p>" << b.same() << " of " << b.starts.size() << " starts ended at the same optimum"
+    << (b.same() < static_cast<int>(b.starts.size()) ? "; the best was kept" : "") << ". A start counts where its chi-squared is within " << number(r.rules.start_same) << " or " << number(100 * r.rules.start_share) << " % of the best.</p><table>"
+    << row({"start", "ended at", "chi-squared above the best"}, "th");
+  const auto values = [&](const std::vector<double>& x) {
+    std::string out;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const ParameterInfo& p = info(d.rig).baseline[i];
+      if (std::find(d.free.begin(), d.free.end(), p.name) != d.free.end()) out += (out.empty() ? "" : ", ") + p.name + " " + quantity(x[i], p.unit);
+    }
+    return out;
+  };
+  for (const BaselineStart& x : b.starts) s << row({values(x.from), values(x.to), number(x.chi2 - best, 3)});
+  s << "</table>\n";
+}
+
+void checks(const Dataset& d, const Result& r, std::ostringstream& s) {
   if (r.detection) {
     const Detection& x = *r.detection;
     s << "<h2>Is anything missing?</h2><p>The largest sum of the baseline's residual over any window is " << number(x.statistic, 3) << " standard deviations (" << escaped(x.trial) << ", " << number(x.from) << " s to " << number(x.to)
@@ -190,6 +211,7 @@ void checks(const Result& r, std::ostringstream& s) {
                            : "Derivatives by differences at one and at two steps disagree for " + escaped(doubtful) + ": intervals of these rest on a kink of the model and are to be doubted.")
       << "</p>\n";
   }
+  starts(d, r, s);
   if (!r.confirmation) return;
   const Confirmation& c = *r.confirmation;
   s << "<h2>Full re-simulation</h2>";
@@ -357,7 +379,7 @@ std::string report_html(const Dataset& d, const Result& r, const std::string& pr
   s << escaped(r.sentence) << "</p>\n";
   curves(d, r, s);
   heat(d, r, s);
-  checks(r, s);
+  checks(d, r, s);
   tables(d, r, s);
   residual_after(d, r, s);
   closing(d, r, program, s);

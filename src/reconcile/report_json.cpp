@@ -110,6 +110,17 @@ Json confirmation_json(const Confirmation& c) {
           {"share", finite(c.share)}, {"parameters", values}};
 }
 
+Json starts_json(const Dataset& d, const BaselineSummary& b) {
+  const auto values = [&](const std::vector<double>& x) {
+    Json out = Json::object();
+    for (std::size_t i = 0; i < x.size(); ++i) out[info(d.rig).baseline[i].name] = finite(x[i]);
+    return out;
+  };
+  Json starts = Json::array();
+  for (const BaselineStart& s : b.starts) starts.push_back({{"from", values(s.from)}, {"to", values(s.to)}, {"chi2", finite(s.chi2)}, {"same", s.same}});
+  return {{"same", b.same()}, {"of", b.starts.size()}, {"starts", starts}};
+}
+
 Json numerics_json(const Numerics& n) {
   Json steps = Json::object();
   for (const Sensitivity& v : n.sensitivities) steps[v.parameter] = {{"disagreement", finite(v.disagreement)}, {"step", v.step}};
@@ -139,6 +150,7 @@ void add_grounds(const Dataset& d, const Result& r, Json& j) {
   if (r.verdict == "ambiguous") j["ambiguity"] = {{"correlation", finite(r.correlation)}, {"masked", finite(r.masked)}};
   if (r.detection) j["detection"] = detection_json(*r.detection);
   if (r.confirmation) j["confirmation"] = confirmation_json(*r.confirmation);
+  j["baseline_starts"] = starts_json(d, r.starts);
   j["numerics"] = numerics_json(r.numerics);
   j["hardware"] = hardware_json(d, r);
   j["notices"] = d.notices;

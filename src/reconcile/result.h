@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "reconcile/baseline.h"
 #include "reconcile/dataset.h"
 #include "reconcile/fit.h"
 #include "reconcile/numerics.h"
@@ -109,6 +110,7 @@ struct Result {
   std::optional<NextExperiment> next;
   std::optional<Confirmation> confirmation;
   std::optional<Detection> detection;
+  BaselineSummary starts;           // of the baseline; empty where nothing is free
   Numerics numerics;                // solver error and sensitivities of the fit that the verdict rests on
   std::vector<Term> shape;          // of an unknown effect: residual = sum coefficient * term, in units of full scale
   std::vector<Term> residual_terms; // the same of the baseline's residual, whatever the verdict (for comparison, see baselines.py)

@@ -3,11 +3,12 @@
 namespace filum::reconcile {
 
 // whoever adds a rule says it in the report, too
-static_assert(sizeof(Rules) == 40 * sizeof(double));
+static_assert(sizeof(Rules) == 43 * sizeof(double));
 static_assert(sizeof(HoldRules) == 14 * sizeof(double));
 
 std::vector<RuleText> listed(const Rules& k) {
-  return {{"material change, share of full scale", k.materiality}, {"the same in an eighth of a record", k.window_materiality}, {"chance of noise alone to detect", k.detect_p}, {"fall of chi-squared to detect", k.detect},
+  return {{"the baseline starts at the guess, and at it times and over", k.start_factor}, {"starts ended at the same optimum: chi-squared above the best, or", k.start_same}, {"share of the best", k.start_share},
+          {"material change, share of full scale", k.materiality}, {"the same in an eighth of a record", k.window_materiality}, {"chance of noise alone to detect", k.detect_p}, {"fall of chi-squared to detect", k.detect},
           {"residual structure that proves a gap, sd", k.structure}, {"fall of BIC to accept, or", k.accept_evidence}, {"chance that the best of the catalogue does as well where nothing is missing", k.accept_p},
           {"share of the gap to be explained", k.explained}, {"the same on held-out protocols", k.held_out}, {"held-out misfit that is judged, sd", k.challenge}, {"a protocol that gets this many times worse could not teach the effect", k.fold_unlearnt},
           {"tie, BIC", k.tie}, {"tie of a rival that these trials could not show", k.aside_tie}, {"tie of a name whose deciding protocol was not run", k.untestable_tie}, {"by which another form must beat the catalogue's, BIC", k.form_preference},

@@ -49,6 +49,9 @@ struct Rules {
   double look_further = 3.5;         // standard deviations of structure left from which a further effect is looked for
   double challenge = 4.0;            // standard deviations of the held-out misfit from which its fall is judged
   double fold_unlearnt = 3.0;        // a protocol that the effect makes this much worse could not teach it, and does not count (of three or more)
+  double start_factor = 5.0;         // times the first guess and its inverse: further starts of the baseline
+  double start_same = 1.0;           // chi2 above the best start's, up to which another ended at the same optimum, or
+  double start_share = 1e-3;         // this share of it
   double refit = 12.0;               // fall of chi2 a free parameter from which a refit within the prior is a verdict
 };
 

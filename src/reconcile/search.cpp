@@ -80,12 +80,12 @@ class Search::Steps {
 Search::Search(const RigModel& model, const std::vector<Form>& forms, const Options& options)
     : model_(model), forms_(forms), options_(options), fitter_(model, first_noise(model)) {}
 
-void Search::fit_baseline() {
+void Search::start_baseline() {
   const auto start = model_.guess();
   Fit loose = fitter_.fit({}, start, {});
   Noise noise = estimate_noise(fitter_, loose);
   fitter_.set_noise(noise);
-  loose = fitter_.fit({}, loose.base, {}, {}, &loose);
+  loose = fit_baseline(fitter_, start, &loose, options_.threads, {options_.rules.start_factor, options_.rules.start_same, options_.rules.start_share}, baseline_);
   noise = estimate_noise(fitter_, loose);
   noise.scatter = model_.data().rig == Rig::forceps_bridge ? 0.008 : replicate_scatter(model_.data(), loose);
   fitter_.set_noise(noise);
@@ -306,7 +306,7 @@ void Search::run() {
     if (options_.progress) options_.progress(stage, share);
   };
   say("baseline", 0.05);
-  fit_baseline();
+  start_baseline();
   say("one effect", 0.15);
   keep(extend(base_, options_.rules.screen_most, 4, {"one effect", 0.15, 0.3}));
   refresh({"one effect", 0.3, 0.35});
