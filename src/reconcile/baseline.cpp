@@ -5,6 +5,12 @@
 #include "reconcile/search.h"
 
 namespace filum::reconcile {
+namespace {
+
+/// Far from the optimum the records' own scales would take up what all have in common (a ravine from which steps lead back slowly): as good as one at first.
+constexpr double kAlike = 1e-4;
+
+}  // namespace
 
 int BaselineSummary::same() const {
   return static_cast<int>(std::count_if(starts.begin(), starts.end(), [](const BaselineStart& s) { return s.same; }));
@@ -31,7 +37,14 @@ std::vector<std::vector<double>> baseline_starts(const Fitter& fitter, const std
 Fit fit_baseline(const Fitter& fitter, const std::vector<double>& guess, const Fit* warm, int threads, const BaselineOptions& options, BaselineSummary& summary) {
   const auto starts = baseline_starts(fitter, guess, options);
   std::vector<Fit> fits(starts.size());
-  parallel(threads, starts.size(), [&](std::size_t i) { fits[i] = i == 0 && warm != nullptr ? fitter.fit({}, warm->base, {}, {}, warm) : fitter.fit({}, starts[i], {}); });
+  Fitter alike(fitter);
+  Noise noise = fitter.noise();
+  noise.scatter = noise.gain_scatter = kAlike;
+  alike.set_noise(std::move(noise));
+  parallel(threads, starts.size(), [&](std::size_t i) {
+    const Fit first = i == 0 && warm != nullptr ? *warm : alike.fit({}, starts[i], {});
+    fits[i] = fitter.fit({}, first.base, {}, {}, &first);
+  });
   const auto best = std::min_element(fits.begin(), fits.end(), [](const Fit& a, const Fit& b) { return a.chi2 < b.chi2; });
   summary.starts.clear();
   for (std::size_t i = 0; i < fits.size() && !fitter.free_baseline().empty(); ++i)

@@ -43,6 +43,12 @@ std::string quantity(double v, const std::string& unit) {
   return plain && std::isfinite(v) && v != 0.0 ? format_prefixed(v, unit) : number(v) + (unit == "-" ? "" : " " + unit);
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& w : words) out += (out.empty() ? "" : ", ") + w;
+  return out;
+}
+
 std::string at_most(double share) { return share < 1e-5 ? "less than 0.001 %" : "at most " + number(100 * share, 2) + " %"; }
 
 std::string interval(const Estimate& e) { return quantity(e.value, e.unit) + " (" + quantity(e.low, e.unit) + " to " + quantity(e.high, e.unit) + ")"; }
@@ -229,7 +235,10 @@ void checks(const Dataset& d, const Result& r, std::ostringstream& s) {
 
 void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
   s << "<h2>Gap</h2><p>Root-mean-square residual over the noise's standard deviation; 1 is perfect.</p><table>" << row({"", "before", "after"}, "th")
-    << row({"fitted trials", number(r.fit.before, 3), number(r.fit.after, 3)}) << row({"held out (" + r.held_out_how + ")", number(r.held_out.before, 3), number(r.held_out.after, 3)}) << "</table><table>"
+    << row({"fitted trials", number(r.fit.before, 3), number(r.fit.after, 3)}) << row({"held out (" + r.held_out_how + ")", number(r.held_out.before, 3), number(r.held_out.after, 3)}) << "</table>";
+  if (!r.folds.empty()) s << "<p>Fitted without these trials, then asked for them; only the records' own scales were fitted to them.</p><table>" << row({"held out", "trials", "before", "after", ""}, "th");
+  for (const Fold& f : r.folds) s << row({f.held, joined(f.trials), number(f.gap.before, 3), number(f.gap.after, 3), f.counts ? "" : "does not count: " + f.why});
+  s << (r.folds.empty() ? "<table>" : "</table><table>")
     << row({"output", "noise, 1 sd", "from", "correlation of neighbours", "share without memory", "samples", "worth, if independent", "full scale"}, "th");
   for (std::size_t c = 0; c < r.noise.output.size(); ++c) {
     const OutputNoise& o = r.noise.output[c];

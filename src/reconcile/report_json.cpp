@@ -110,6 +110,16 @@ Json confirmation_json(const Confirmation& c) {
           {"share", finite(c.share)}, {"parameters", values}};
 }
 
+Json folds_json(const std::vector<Fold>& folds) {
+  Json out = Json::array();
+  for (const Fold& f : folds) {
+    Json one = {{"held_out", f.held}, {"trials", f.trials}, {"before", finite(f.gap.before)}, {"after", finite(f.gap.after)}, {"counts", f.counts}};
+    if (!f.counts) one["why"] = f.why;
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
 Json starts_json(const Dataset& d, const BaselineSummary& b) {
   const auto values = [&](const std::vector<double>& x) {
     Json out = Json::object();
@@ -172,7 +182,7 @@ Json report_json(const Dataset& d, const Result& r) {
   j["rivals"] = rivals_json(r);
   j["gap"] = {{"noise", noise_json(d, r)},
               {"fit", {{"before", finite(r.fit.before)}, {"after", finite(r.fit.after)}}},
-              {"held_out", {{"before", finite(r.held_out.before)}, {"after", finite(r.held_out.after)}, {"how", r.held_out_how}}}};
+              {"held_out", {{"before", finite(r.held_out.before)}, {"after", finite(r.held_out.after)}, {"how", r.held_out_how}, {"folds", folds_json(r.folds)}}}};
   j["where"] = where_json(r.where);
   j["where_by"] = where_by_json(r.where_by);
   j["not_testable"] = not_testable_json(r.not_testable);

@@ -58,6 +58,17 @@ struct Gap {
   double before = 0.0, after = 0.0;  // rms residual over the noise's standard deviation
 };
 
+/// Trials that were held out together, and what was left of them.
+struct Fold {
+  std::string held;                 // by what
+  std::vector<std::string> trials;  // files
+  Gap gap;
+  double before = 0.0, after = 0.0; // chi2 over the overdispersion, less the samples
+  int samples = 0;
+  bool counts = true;               // in the held-out gap and criterion;
+  std::string why;                  // else why not
+};
+
 struct NextExperiment {
   std::string protocol, why;
   double chance = 0.0;  // of telling the rivals apart, of 50 simulated repetitions
@@ -103,6 +114,7 @@ struct Result {
   Noise noise;
   Gap fit, held_out;
   std::string held_out_how;
+  std::vector<Fold> folds;
   std::vector<Cell> where;
   std::vector<Share> where_by;
   std::vector<Screened> screened;   // every effect of the rig by the score test of the baseline's residual

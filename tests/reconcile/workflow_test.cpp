@@ -152,7 +152,7 @@ TEST(Workflow, WritesTheReportOfTheContract) {
   for (const char* effect : {"viscoelastic-relaxation", "strain-stiffening", "sensor-lag", "mains-hum", "rig-compliance"}) EXPECT_TRUE(screened.count(effect)) << effect;
   for (const auto& w : j["where_by"]) axes.insert(w["axis"]);
   EXPECT_EQ(axes, (std::set<std::string>{"trial", "phase", "strain", "rate", "frequency"}));  // one output and one cycle: nothing to compare
-  EXPECT_EQ(j["rules"].size(), 43u);
+  EXPECT_EQ(j["rules"].size(), 46u);
   EXPECT_EQ(j["baseline_starts"]["of"], 3);
   EXPECT_EQ(j["baseline_starts"]["same"], 3);  // a block has one optimum
   EXPECT_NE(page.find("3 of 3 starts ended at the same optimum"), std::string::npos);
