@@ -133,25 +133,49 @@ std::string what_would(const NextExperiment& next) {
 }
 
 /// The winner and its rivals, how alike they are, and the experiment that would part them.
-void leave_open(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, Result& r) {
-  r.verdict = "ambiguous";
-  r.effects.clear();
-  r.rivals.clear();
+void compare(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, Result& r) {
   std::vector<const Fit*> all = rivals;
   all.insert(all.begin(), &winner);
   std::vector<double> evidence;
-  std::string others;
   for (const Fit* f : all) {
-    r.rivals.push_back(as_rival(search, *f));
+    r.alike_sets.push_back(effects_in(*f));
     evidence.push_back(search.bic(*f));
-    if (f != &winner) others += (others.empty() ? "" : " or ") + names(effects_in(*f));
   }
-  r.sentence = "These trials cannot tell " + names(effects_in(winner)) + " from " + others + ".";
-  const Screen screen(search.fitter(), search.base());
-  r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
-  r.masked = screen.score(*winner.forms[0], winner.params[0]).masked;
+  r.alike = Screen(search.fitter(), search.base()).likeness(all);
   r.next = next_experiment(search.fitter(), all, evidence, search.dispersion(), r.rules.tie);
+}
+
+void leave_open(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, Result& r) {
+  r.verdict = "ambiguous";
+  r.effects.clear();
+  r.rivals = {as_rival(search, winner)};
+  std::string others;
+  for (const Fit* f : rivals) others += (others.empty() ? "" : " or ") + names(effects_in(*f)), r.rivals.push_back(as_rival(search, *f));
+  r.sentence = "These trials cannot tell " + names(effects_in(winner)) + " from " + others + ".";
+  compare(search, winner, rivals, r);
   if (r.next) r.sentence += what_would(*r.next);
+}
+
+/// What several sets share is named; what they do not share stays open.
+void name_common(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, const std::set<Effect>& shared, Result& r) {
+  r.verdict = "effect";
+  r.partial = true;
+  std::erase_if(r.effects, [&](const NamedEffect& e) { return shared.count(e.effect) == 0; });
+  compare(search, winner, rivals, r);
+  std::string beside;
+  for (const auto& set : r.alike_sets) {
+    std::vector<Effect> rest;
+    std::copy_if(set.begin(), set.end(), std::back_inserter(rest), [&](Effect e) { return shared.count(e) == 0; });
+    beside += (beside.empty() ? "" : " or ") + (rest.empty() ? "nothing" : names(rest));
+  }
+  r.sentence = "All sets that explain the measurements share " + names({shared.begin(), shared.end()}) + "; what acts beside it is not decided: " + beside + "." + (r.next ? what_would(*r.next) : "");
+}
+
+/// What would make a name that leaves a part whole.
+std::string completed_by(const Rules& rules) {
+  char text[200];
+  std::snprintf(text, sizeof text, "; a further effect that lowers BIC by %.3g and takes away %.2g %% of the gap, beside values inside their range, would make it whole", rules.pair_evidence, 100 * rules.pair_share);
+  return text;
 }
 
 void name(const Search& search, const Fit& winner, Result& r, const Options& options) {
@@ -174,12 +198,9 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   if (rivals.empty()) {
     r.verdict = "effect";
     r.sentence = "The measurements behave as if " + names(effects_in(winner)) + (r.partial ? " acted, among something else that remains unnamed." : " acted, under these protocols.") +
-                 " A rival that came within " + std::to_string(static_cast<int>(r.rules.tie)) + " units of BIC would make it ambiguous.";
+                 " A rival that came within " + std::to_string(static_cast<int>(r.rules.tie)) + " units of BIC would make it ambiguous" + (r.partial ? completed_by(r.rules) : "") + ".";
   } else if (!shared.empty() && winner.forms.size() > 1) {
-    r.verdict = "effect";
-    r.partial = true;
-    std::erase_if(r.effects, [&](const NamedEffect& e) { return shared.count(e.effect) == 0; });
-    r.sentence = "All sets that explain the measurements share " + names({shared.begin(), shared.end()}) + "; what acts beside it is not decided.";
+    name_common(search, winner, rivals, shared, r);
   } else {
     leave_open(search, winner, rivals, r);
   }
@@ -233,9 +254,10 @@ std::string described(const Result& r) {
   const auto most = std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   char text[240] = "";
   std::string out;
+  const bool several = r.noise.output.size() > 1;
   if (most != phases.end()) std::snprintf(text, sizeof text, " %.0f %% of it sits where the trials are in %s", 100 * most->second, most->first.c_str());
   out += text;
-  if (!r.shape.empty()) std::snprintf(text, sizeof text, "; it follows %s (in %.0f %% of resamplings)", r.shape[0].name.c_str(), 100 * r.shape[0].stability), out += text;
+  if (!r.shape.empty()) std::snprintf(text, sizeof text, "; %sit follows %s (in %.0f %% of resamplings)", several ? (r.shape[0].output + ": ").c_str() : "", r.shape[0].name.c_str(), 100 * r.shape[0].stability), out += text;
   std::snprintf(text, sizeof text, ". A candidate that takes away %.0f %% of it, and %.0f %% in protocols it was not fitted to, would change this.", 100 * r.rules.explained, 100 * r.rules.held_out);
   return out + (out.empty() ? text + 1 : text);
 }
@@ -254,8 +276,8 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   r.structure_before = search.structure(search.base()).z;
   r.structure_after = search.structure(r.after).z;
   if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise), r.where_by = localise_by(fitter.model(), r.before, r.noise);
-  r.residual_terms = describe(fitter.model(), r.before);
-  if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after);
+  r.residual_terms = describe(fitter.model(), r.before, r.noise);
+  if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after, r.noise);
   if (r.verdict == "unknown") r.sentence += described(r);
   list_tried(search, r, winner);
 }

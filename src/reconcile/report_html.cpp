@@ -326,23 +326,42 @@ void residual_after(const Dataset& d, const Result& r, std::ostringstream& s) {
 }
 
 /// A term with the output's own name.
-std::string in_words(const Dataset& d, std::string term) {
-  if (const std::size_t at = term.find("output"); at != std::string::npos) term.replace(at, 6, d.outputs[0]);
+std::string in_words(const Term& t) {
+  std::string term = t.name;
+  if (const std::size_t at = term.find("output"); at != std::string::npos) term.replace(at, 6, t.output);
   return term;
+}
+
+/// How alike the signatures of all sets are that the data do not tell apart.
+void ambiguity(const Result& r, std::ostringstream& s) {
+  if (r.alike_sets.size() < 2) return;
+  s << "<h2>How alike they are</h2><p>Correlation of the signatures of each two sets, in what a refit of the baseline cannot answer (1 or -1: no record of these trials tells them apart), and the share of each that such a refit hides.</p><table>";
+  std::vector<std::string> head = {""};
+  for (const auto& set : r.alike_sets) head.push_back(names(set));
+  head.push_back("hidden by a refit");
+  s << row(head, "th");
+  for (std::size_t i = 0; i < r.alike_sets.size(); ++i) {
+    std::vector<std::string> cells = {names(r.alike_sets[i])};
+    for (std::size_t k = 0; k < r.alike_sets.size(); ++k) cells.push_back(number(r.alike.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)), 3));
+    cells.push_back(number(100 * r.alike.masked[i], 3) + " %");
+    s << row(cells);
+  }
+  s << "</table>\n";
 }
 
 void closing(const Dataset& d, const Result& r, const std::string& program, std::ostringstream& s) {
   if (!r.shape.empty()) {
     if (d.rig == Rig::tip_hold) s << "<h2>Shape of what is not explained</h2><p>The octave of the spectrum with most power beside what is named; stability is the share of 30 resamplings of the records that chose it.</p><table>" << row({"band", "times the noise's power", "stability"}, "th");
-    else s << "<h2>Shape of what is not explained</h2><p>Sparse regression of the residual, in parts of full scale, on terms scaled to 1; stability is the share of 30 resamplings that chose the term.</p><table>" << row({"term", "coefficient", "stability"}, "th");
-    for (const Term& t : r.shape) s << row({in_words(d, t.name), number(t.coefficient, 3), number(t.stability, 2)});
+    else s << "<h2>Shape of what is not explained</h2><p>Sparse regression of the residual, in parts of full scale, on terms scaled to 1; stability is the share of 30 resamplings that chose the term.</p><table>" << row({"output", "term", "coefficient", "stability"}, "th");
+    for (const Term& t : r.shape) s << (d.rig == Rig::tip_hold ? row({t.name, number(t.coefficient, 3), number(t.stability, 2)}) : row({t.output, in_words(t), number(t.coefficient, 3), number(t.stability, 2)}));
     s << "</table>\n";
   }
   if (r.verdict == "ambiguous") {
     s << "<h2>Rivals</h2><table>" << row({"effects", "form", "behind the best, BIC", "explains"}, "th");
     for (const Tried& t : r.rivals) s << row({names(t.effects), t.form, number(t.evidence - r.rivals[0].evidence, 3), number(100 * t.explained, 3) + " %"});
-    s << "</table><p>The signatures of the first two correlate by " << number(r.correlation, 3) << "; a refit of the baseline hides " << number(100 * r.masked, 3) << " % of the first one's.</p>\n";
+    s << "</table>";
   }
+  ambiguity(r, s);
   if (r.next) s << "<h2>Next experiment</h2><p>" << escaped(r.next->protocol) << ": " << escaped(r.next->why) << ". It would decide in " << number(100 * r.next->chance, 3) << " % of 50 simulated repetitions.</p>\n";
   s << "<h2>Not testable with these trials</h2>";
   if (r.not_testable.empty()) {

@@ -28,7 +28,7 @@ Json json_of(const std::vector<Estimate>& all) {
 
 Json json_of(const std::vector<Term>& terms) {
   Json out = Json::array();
-  for (const Term& t : terms) out.push_back({{"term", t.name}, {"coefficient", finite(t.coefficient)}, {"stability", t.stability}});
+  for (const Term& t : terms) out.push_back({{"term", t.name}, {"coefficient", finite(t.coefficient)}, {"stability", t.stability}, {"output", t.output}});
   return out;
 }
 
@@ -110,6 +110,21 @@ Json confirmation_json(const Confirmation& c) {
           {"share", finite(c.share)}, {"parameters", values}};
 }
 
+/// Of all sets that are not told apart; `correlation` and `masked` are those of the first two and of the first.
+Json ambiguity_json(const Result& r) {
+  Json sets = Json::array(), rows = Json::array(), masked = Json::array();
+  const auto n = r.alike.correlation.rows();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    Json one = Json::array();
+    for (Eigen::Index j = 0; j < n; ++j) one.push_back(finite(r.alike.correlation(i, j)));
+    rows.push_back(std::move(one));
+    sets.push_back(names(r.alike_sets[k]));
+    masked.push_back(finite(r.alike.masked[k]));
+  }
+  return {{"correlation", finite(r.alike.correlation(0, 1))}, {"masked", finite(r.alike.masked[0])}, {"sets", sets}, {"correlations", rows}, {"masked_each", masked}};
+}
+
 Json folds_json(const std::vector<Fold>& folds) {
   Json out = Json::array();
   for (const Fold& f : folds) {
@@ -157,7 +172,7 @@ void add_grounds(const Dataset& d, const Result& r, Json& j) {
   j["tried"] = tried_json(r.tried);
   j["screened"] = screened_json(r.screened);
   j["rules"] = rules_json(rules_of(d, r));
-  if (r.verdict == "ambiguous") j["ambiguity"] = {{"correlation", finite(r.correlation)}, {"masked", finite(r.masked)}};
+  if (r.alike_sets.size() > 1) j["ambiguity"] = ambiguity_json(r);
   if (r.detection) j["detection"] = detection_json(*r.detection);
   if (r.confirmation) j["confirmation"] = confirmation_json(*r.confirmation);
   j["baseline_starts"] = starts_json(d, r.starts);

@@ -77,6 +77,7 @@ struct NextExperiment {
 struct Term {
   std::string name;
   double coefficient = 0.0, stability = 0.0;
+  std::string output = {};  // whose residual it is a term of
 };
 
 /// What the trainer's own solver says of a name (confirm.h).
@@ -127,8 +128,8 @@ struct Result {
   std::vector<Term> shape;          // of an unknown effect: residual = sum coefficient * term, in units of full scale
   std::vector<Term> residual_terms; // the same of the baseline's residual, whatever the verdict (for comparison, see baselines.py)
   double dispersion = 1.0, structure_before = 0.0, structure_after = 0.0;
-  double correlation = 0.0;         // of the signatures of the first two rivals
-  double masked = 0.0;              // share of the first rival's signature that a refit of the baseline hides
+  std::vector<std::vector<Effect>> alike_sets;  // sets that the data do not tell apart, the best first, and
+  Likeness alike;                   // how alike their signatures are
   Fit before, after;                // for the plots
   Fit held_before, held_after;      // the same of trials marked hold_out; empty without them
   std::vector<Form> forms;          // owned here, since fits point to them
@@ -156,7 +157,8 @@ std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& 
 /// The same axis by axis: trial, output, phase, strain (or the input), rate, cycle, band of frequency. Axes on which there is one bin only are left out.
 std::vector<Share> localise_by(const RigModel& model, const Fit& base, const Noise& noise);
 Gap gap_of(const Noise& noise, const Fit& before, const Fit& after);
-std::vector<Term> describe(const RigModel& model, const Fit& base);
+/// Terms of every output's residual over every input, its rate, time and products, that are stable over resampling: the output of which most is left first.
+std::vector<Term> describe(const RigModel& model, const Fit& fit, const Noise& noise);
 /// `evidence`: BIC of each rival (less is better); `tie`: by how much one must lead.
 std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::vector<const Fit*>& rivals, const std::vector<double>& evidence, double dispersion, double tie);
 std::vector<Estimate> baseline_estimates(const Fitter& fitter, const Fit& fit, double dispersion);

@@ -43,11 +43,13 @@ Screen::Screen(const Fitter& fitter, const Fit& fit) : fitter_(fitter), fit_(fit
   S_ = ng > 0 ? A.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : A;
 }
 
-Screen::Signature Screen::signature(const Form& form, const std::vector<double>& start) const {
+Screen::Signature Screen::signature(const Form& form, const std::vector<double>& start) const { return signature(std::vector<const Form*>{&form}, {start}); }
+
+Screen::Signature Screen::signature(const std::vector<const Form*>& forms, const std::vector<std::vector<double>>& params) const {
   Signature out;
   Fit with = fit_;
-  with.forms.push_back(&form);
-  with.params.push_back(start);
+  with.forms.insert(with.forms.end(), forms.begin(), forms.end());
+  with.params.insert(with.params.end(), params.begin(), params.end());
   out.g = Eigen::VectorXd::Zero(S_.rows());
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     Eigen::VectorXd s = fitter_.residual(trials_[i], fitter_.setting(with, trials_[i])) - r_[i];
@@ -156,10 +158,20 @@ Screen::Direction Screen::direction(const Form& form, const std::vector<double>&
   return out;
 }
 
-double Screen::correlation(const Form& a, const std::vector<double>& pa, const Form& b, const std::vector<double>& pb) const {
-  const Signature x = signature(a, pa), y = signature(b, pb);
-  const double xx = inner(x, x), yy = inner(y, y);
-  return xx > 0 && yy > 0 ? inner(x, y) / std::sqrt(xx * yy) : 0.0;
+Likeness Screen::likeness(const std::vector<const Fit*>& sets) const {
+  std::vector<Signature> all;
+  for (const Fit* f : sets) all.push_back(signature(f->forms, f->params));
+  const auto n = static_cast<Eigen::Index>(sets.size());
+  Likeness out{Eigen::MatrixXd::Zero(n, n), {}};
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index k = 0; k < n; ++k) out.correlation(i, k) = inner(all[static_cast<std::size_t>(i)], all[static_cast<std::size_t>(k)]);
+  const Eigen::VectorXd seen = out.correlation.diagonal().cwiseMax(0.0);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double norm = all[static_cast<std::size_t>(i)].norm;
+    out.masked.push_back(norm > 0.0 ? 1.0 - seen[i] / norm : 1.0);
+    for (Eigen::Index k = 0; k < n; ++k) out.correlation(i, k) = i == k ? 1.0 : seen[i] > 0.0 && seen[k] > 0.0 ? out.correlation(i, k) / std::sqrt(seen[i] * seen[k]) : 0.0;
+  }
+  return out;
 }
 
 namespace {
