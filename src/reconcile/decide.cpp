@@ -10,6 +10,7 @@
 #include "reconcile/choose.h"
 #include "reconcile/confirm.h"
 #include "reconcile/rivals.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
@@ -129,7 +130,7 @@ bool leaves_a_part(const Search& search, const Fit& winner, const Rules& rules) 
 std::string what_would(const NextExperiment& next) {
   char text[60];
   std::snprintf(text, sizeof text, ", which decides in %.0f of 50 simulated repetitions", 50 * next.chance);
-  return (next.chance >= 0.5 ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + next.protocol + text + ".";
+  return (next.chance >= assumed::kLikely ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + next.protocol + text + ".";
 }
 
 /// The winner and its rivals, how alike they are, and the experiment that would part them.

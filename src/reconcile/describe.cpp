@@ -8,6 +8,7 @@
 
 #include "base/rng.h"
 #include "reconcile/result.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
@@ -140,7 +141,7 @@ std::vector<Term> stable_terms(const Table& t, const std::string& output, Rng& r
   }
   std::vector<Term> out;
   for (const auto& [j, count] : chosen)
-    if (count >= kRounds / 3) out.push_back({t.names[static_cast<std::size_t>(j)], coefficient[j] / count, static_cast<double>(count) / kRounds, output});
+    if (count >= assumed::kResampled * kRounds) out.push_back({t.names[static_cast<std::size_t>(j)], coefficient[j] / count, static_cast<double>(count) / kRounds, output});
   std::stable_sort(out.begin(), out.end(), [](const Term& a, const Term& b) { return a.stability > b.stability; });
   return out;
 }

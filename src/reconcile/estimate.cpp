@@ -5,19 +5,16 @@
 #include <cmath>
 
 #include "reconcile/result.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
 
 constexpr double kTwoSided = 1.96;
-constexpr double kForm = 0.02;   // relative, 1 sd: gain error of the sensor and the form of the law, which no fit can see
-constexpr double kWiden = 2.1;   // curvature understates the spread of nonlinear fits whose law is not quite the true one (development half: 90 to 93 % cover)
 
-constexpr double kClock = 1e-4;  // relative, 1 sd: rate of a clock, all that a line's frequency owes to the instrument
-
-Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high, double form = kForm) {
+Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high, double form = assumed::kForm) {
   if (!std::isfinite(sd)) return {name, unit, value, low, high};
-  sd = logarithmic ? std::hypot(kWiden * sd, form) : std::hypot(kWiden * sd, form * std::abs(value));
+  sd = logarithmic ? std::hypot(assumed::kWiden * sd, form) : std::hypot(assumed::kWiden * sd, form * std::abs(value));
   if (logarithmic) return {name, unit, value, std::max(low, value * std::exp(-kTwoSided * std::min(sd, 20.0))), std::min(high, value * std::exp(kTwoSided * std::min(sd, 20.0)))};
   return {name, unit, value, std::max(low, value - kTwoSided * sd), std::min(high, value + kTwoSided * sd)};
 }
@@ -31,7 +28,7 @@ double deviation(const Fit& f, std::size_t k, double dispersion) {
 double line_blur(const Dataset& d, double frequency) {
   std::vector<double> steps;
   for (const Trial& t : d.trials) steps.push_back((t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1));
-  const double phase = 6.283185307179586 * frequency * 0.05 * median(steps);
+  const double phase = 6.283185307179586 * frequency * assumed::kJitter * median(steps);
   return std::expm1(std::min(0.5 * phase * phase, 3.0));
 }
 
@@ -68,7 +65,7 @@ Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const s
   const double mid = median(all);
   double var = 0.0;
   for (const double a : all) var += (a - mid) * (a - mid) / std::max<double>(1.0, static_cast<double>(all.size()) - 1.0);
-  const double half = 1.4 * kTwoSided * std::sqrt(var / static_cast<double>(std::max<std::size_t>(1, all.size()))) + 0.02 * mid;
+  const double half = assumed::kLineWiden * kTwoSided * std::sqrt(var / static_cast<double>(std::max<std::size_t>(1, all.size()))) + assumed::kForm * mid;
   const double blur = line_blur(d, p[0]);
   std::string unit = "-";
   for (const ChannelInfo& c : info(d.rig).channels)
@@ -108,7 +105,7 @@ std::vector<NamedEffect> effect_estimates(const Fitter& fitter, const Fit& fit, 
     NamedEffect named{form.effect, form.text, {}};
     for (std::size_t i = 0; i < form.params.size(); ++i, ++k) {
       const ParamSpec& p = form.params[i];
-      Estimate e = estimate(p.name, p.unit, fit.params[f][i], deviation(fit, k, dispersion), p.logarithmic, p.low, p.high, form.effect == Effect::mains_hum ? kClock : kForm);
+      Estimate e = estimate(p.name, p.unit, fit.params[f][i], deviation(fit, k, dispersion), p.logarithmic, p.low, p.high, form.effect == Effect::mains_hum ? assumed::kClock : assumed::kForm);
       if (p.times_baseline >= 0) {
         const double b = fit.base[static_cast<std::size_t>(p.times_baseline)];
         e.value *= b, e.low *= b, e.high *= b;

@@ -94,7 +94,7 @@ Json screened_json(const std::vector<Screened>& all) {
 
 Json rules_json(const std::vector<RuleText>& rules) {
   Json out = Json::array();
-  for (const RuleText& x : rules) out.push_back({{"rule", x.text}, {"value", x.value}});
+  for (const RuleText& x : rules) out.push_back({{"rule", x.text}, {"value", x.value}, {"reference", x.reference}, {"why", x.why}});
   return out;
 }
 

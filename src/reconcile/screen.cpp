@@ -1,4 +1,5 @@
 #include "reconcile/screen.h"
+#include "reconcile/rules.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -103,7 +104,7 @@ Score Screen::score(const Form& form, const std::vector<double>& start) const {
   out.amplitude = -along / out.seen;
   const bool either_sign = !form.params.empty() && form.params[0].low < 0.0 && form.params[0].high > 0.0;
   if (out.amplitude > 0.0 || either_sign) out.gain = along * along / out.seen;
-  if (out.amplitude > 4.0) out.gain *= 0.7;  // far from the start: the promise is less sure
+  if (out.amplitude > assumed::kFarStart) out.gain *= assumed::kFarPromise;  // far from the start: the promise is less sure
   return out;
 }
 
@@ -211,9 +212,9 @@ Reason clock_condition(const Dataset& d, Effect e) {
     rate = std::min(rate, (t.samples() - 1) / length);
     span = std::max(span, length);
   }
-  if (e == Effect::pulsation && (rate < 1.0 || span < 3.0)) return {"records too short or sampled too slowly for a heart beat", true};
-  if (e == Effect::physiological_tremor && rate < 17.0) return {"sampled more slowly than twice 8 Hz", true};
-  if (e == Effect::mains_hum && (rate < 1.5 || span * rate < 24.0)) return {"too few samples: sampled so slowly that 50 Hz folds onto anything", true};
+  if (e == Effect::pulsation && (rate < assumed::kHeartSampling || span < assumed::kHeartSpan)) return {"records too short or sampled too slowly for a heart beat", true};
+  if (e == Effect::physiological_tremor && rate < assumed::kTremorSampling) return {"sampled more slowly than twice 8 Hz", true};
+  if (e == Effect::mains_hum && (rate < assumed::kHumSampling || span * rate < assumed::kHumSamples)) return {"too few samples: sampled so slowly that 50 Hz folds onto anything", true};
   return {};
 }
 
@@ -234,8 +235,8 @@ std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& fo
   double clearer = 1.0;  // where less noise than 1 % of full scale is stated
   for (const std::string& name : d.outputs) {
     const double fs = model.full_scale(name);
-    noise.output.push_back({0.01 * fs, 0.0, fs, ""});
-    if (const double stated = d.channel(name).noise; stated > 0.0) clearer = std::max(clearer, std::pow(0.01 * fs / stated, 2));
+    noise.output.push_back({assumed::kLintNoise * fs, 0.0, fs, ""});
+    if (const double stated = d.channel(name).noise; stated > 0.0) clearer = std::max(clearer, std::pow(assumed::kLintNoise * fs / stated, 2));
   }
   Fitter fitter(model, noise);
   Fit base;
