@@ -1,5 +1,7 @@
 #include "reconcile/rules.h"
 
+#include <cmath>
+
 namespace filum::reconcile {
 
 // whoever adds a rule says it in the report, too
@@ -17,46 +19,46 @@ std::vector<RuleText> deciding(const Rules& k) {
       {"the same in an eighth of a record", kNone, k.window_materiality, "events shorter than a record (puncture, pull-off) change its mean little"},
       {"chance of noise alone to detect", "0.01", k.detect_p, ""},
       {"fall of chi-squared to detect", kNone, k.detect, "the best of a catalogue reaches 11 to 14 by chance"},
-      {"residual structure that proves a gap, sd", kNone, k.structure, "what no candidate explains has no candidate's test"},
+      {"residual structure that proves a gap, sd", kNone, k.structure, "for what no candidate's test sees"},
       {"fall of BIC to accept, or", "10", k.accept_evidence, ""},
       {"chance that the best of the catalogue does as well where nothing is missing", kNone, k.accept_p, "BIC's log n asks more than a weak effect of two or three values can pay"},
       {"share of the gap to be explained", "0.70", k.explained, ""},
       {"the same on held-out protocols", "0.50", k.held_out, ""},
       {"held-out misfit that is judged, sd", kNone, k.challenge, "a share of next to nothing is noise"},
-      {"folds of protocols at most", "each protocol", static_cast<double>(k.folds), "keeps the time; many protocols share a fold"},
-      {"rates that differ by this factor are not the same", "fit slow, validate fast", k.rate_apart, "replicates of one rate differ by jitter only"},
+      {"folds of protocols at most", "each protocol (4.2)", static_cast<double>(k.folds), "keeps the time; many protocols share a fold"},
+      {"rates that differ by this factor are not the same", "fit slow, validate fast (4.2)", k.rate_apart, "replicates of one rate differ by jitter only"},
       {"a protocol that gets this many times worse could not teach the effect", kNone, k.fold_unlearnt, "an effect that acts in one protocol only cannot be learnt without it"},
       {"tie, BIC", "6, or signatures that correlate by 0.95", k.tie, "likeness is told, not ruled by: evidence parts even what correlates"},
       {"tie of a rival that these trials could not show", kNone, k.aside_tie, "it stands among what is not testable already"},
       {"tie of a name whose deciding protocol was not run", kNone, k.untestable_tie, "its own form's error could be all that leads"},
       {"by which another form must beat the catalogue's, BIC", kNone, k.form_preference, "wide families name what lies outside the catalogue"},
-      {"effects at most", "3", static_cast<double>(k.most_effects), ""},
-      {"structure left from which a further effect is looked for, sd", "30 % of the excess left", k.look_further, "small effects beside large ones leave less than that"},
+      {"effects at most", "3 (4.2)", static_cast<double>(k.most_effects), ""},
+      {"structure left from which a further effect is looked for, sd", "30 % of the excess left (4.2)", k.look_further, "small effects beside large ones leave less than that"},
       {"a further effect: BIC", kNone, k.pair_evidence, "stricter than a first one"},
-      {"a further effect: share of the gap, or", "0.15", k.pair_share, "of two unequal effects the smaller has less (development half)"},
+      {"a further effect: share of the gap, or", "0.15 (4.2)", k.pair_share, "the smaller of two unequal effects; the rules below keep form errors out"},
       {"this share", kNone, k.pair_least, "less is the first effect's form error"},
       {"with a change of the prediction, times what is material, of", kNone, k.pair_material, "the same"},
       {"or this share (change twice that)", kNone, k.pair_clean, "beside a very large effect"},
       {"if it takes of what is left", kNone, k.pair_rest, "then hardly anything else can be meant"},
       {"or of its gain from samples where the others are silent", kNone, k.silent_share, "no form of the others can err there"},
       {"which are at least this part", kNone, k.silent_least, "the same"},
-      {"instruments alone, explaining enough, are rivals unless the name earns its place beside them or predicts better: order of stages", "instrument first", 0.0, "stage of the catalogue; they are fitted whenever they promise anything"},
-      {"partial: sd left", "explained 0.4 to 0.7", k.partial_structure, "below 0.7 nothing is named; partial is a name that leaves structure"},
-      {"partial: share left", "0.3", k.partial_share, "the same"},
+      {"instruments alone, explaining enough, are rivals unless the name earns its place beside them or predicts better: order of stages", "instrument first (4.2)", NAN, "stage of the catalogue; they are fitted whenever they promise anything"},
+      {"partial: sd left, and", "explained 0.4 to 0.7", k.partial_structure, "below 0.7 nothing is named at all; partial is a name that leaves structure"},
+      {"partial: share left", "explained 0.4 to 0.7", k.partial_share, "the same"},
       {"partial: gain error asked for", "inside bounds", k.gain_most, "no instrument's gain is off by more than 1 % (contract)"},
-      {"structure left from which it counts as noise in all comparisons, sd", "sigma left free", k.overdispersed, "a fit that is good enough needs no wider yardstick"},
-      {"refit of parameters that is a verdict: fall of chi-squared each", "explained 0.70", k.refit, "a share of the model file's misfit depends on how wrong the file is"},
+      {"structure left from which it counts as noise in all comparisons, sd", "sigma left free (2.8)", k.overdispersed, "a fit that is good enough needs no wider yardstick"},
+      {"refit of parameters that is a verdict: fall of chi-squared each", "explained 0.70", k.refit, "and material: with nothing else missing a refit explains all there is"},
   };
 }
 
 std::vector<RuleText> searching(const Rules& k) {
   return {
-      {"the baseline starts at the guess, and at it times and over", "8 starts", k.start_factor, "3 starts: with one or two free values they end in the same place in all but few sets"},
+      {"the baseline starts at the guess, and at it times and over", "8 starts (4.2)", k.start_factor, "three: with one to four free values they end in the same place in nearly all sets"},
       {"starts ended at the same optimum: chi-squared above the best, or", kNone, k.start_same, "less tells no two models apart"},
       {"share of the best", kNone, k.start_share, "a baseline that misfits stops at 1e-5 of it"},
-      {"masked share that hides an effect", "0.9", k.masked, "0.9 is said beside the effect; at 0.999 nothing is left to be named by"},
-      {"squared signal to noise that shows one", "16 (oracle's SNR of 4)", k.testable, ""},
-      {"effects screened at most, beside instruments", "6", static_cast<double>(k.screen_most), "score tests of far starts promise unevenly"},
+      {"masked share that hides an effect", "0.9 (2.6)", k.masked, "0.9 is said beside the effect; at 0.999 nothing is left to be named by"},
+      {"squared signal to noise that shows one", "16 (4.5: SNR of 4)", k.testable, ""},
+      {"effects screened at most, beside instruments", "6 (4.2)", static_cast<double>(k.screen_most), "score tests of far starts promise unevenly"},
       {"sets fitted again when the noise is known, beside instruments alone", kNone, static_cast<double>(k.kept_most), kScreening},
       {"with a share of the best score of", kNone, k.screen_share, kScreening},
       {"and a promised fall of chi-squared of", kNone, k.screen_least, kScreening},
@@ -72,18 +74,18 @@ std::vector<RuleText> taken_as_given() {
   using namespace assumed;
   return {
       {"noise of full scale until the first fit", kNone, kFirstNoise, "replaced by what replicates or neighbours differ by"},
-      {"noise of full scale for lint", "2 and 0.5 to 10 %", kLintNoise, "the middle of the contract's range; what is stated if less"},
-      {"scatter of the records' stiffness until replicates are fitted", "5 to 25 %", kFirstScatter, "contract: 5 to 10 %"},
+      {"noise of full scale for lint", kNone, kLintNoise, "what is stated, if that is less"},
+      {"scatter of the records' stiffness until replicates are fitted", "5 to 25 % (4.5)", kFirstScatter, "contract: 5 to 10 %"},
       {"scatter believed from", kNone, kScatterLow, "a handle's records, and few replicates that happen to agree"},
-      {"to", kNone, kScatterHigh, "more is another effect"},
+      {"to", kNone, kScatterHigh, "the contract's 10 % and a margin"},
       {"without replicates", kNone, kScatterAlone, "more would hide what differs between protocols"},
       {"where blades of two sizes are compared", kNone, kBladeScatter, "the factor of a punch is an estimate"},
       {"scatter of gains", kNone, kGainScatter, "contract: up to 1 %, evenly"},
-      {"noise that half remembers: twice the log likelihood", "AR(1)/AR(2) + white", kWhiteWorth, "once in 200 sets where there is none"},
+      {"noise that half remembers: twice the log likelihood", "AR(1) or AR(2) and white (2.1)", kWhiteWorth, "once in 200 sets where there is none"},
       {"noise over what is stated, at most", kNone, kStatedMost, "jitter and converter add to it"},
-      {"correlation of neighbours that is noise's own", kNone, kMemoryLeast, "its error in a few hundred samples"},
-      {"jitter of a clock, of a step", "1 ms", kJitter, "contract: ordinary"},
-      {"curvature's intervals are widened by", "profile likelihood", kWiden, "laws are not quite the true ones; 90 to 93 % covered in the development half, profiles cost a hundred fits"},
+      {"correlation of neighbours that is noise's own", kNone, kMemoryLeast, "its own error in 150 samples"},
+      {"jitter of a clock, of a step", "1 ms (4.5)", kJitter, "contract: ordinary"},
+      {"curvature's intervals are widened by", "profile likelihood", kWiden, "laws are not quite the true ones; with it 90 to 93 % covered in the development half"},
       {"relative error of form and gain in an interval", kNone, kForm, "which no fit can see"},
       {"the same of a line's frequency", kNone, kClock, "rate of a clock"},
       {"an amplitude's interval is widened by", kNone, kLineWiden, "a mean of few records"},
@@ -102,11 +104,11 @@ std::vector<RuleText> taken_as_given() {
       {"and third", kNone, static_cast<double>(kTripleEffects), kScreening},
       {"forms of an effect that are fitted alone", "each", static_cast<double>(kFirstForms), kScreening},
       {"and beside others", "each", static_cast<double>(kFurtherForms), kScreening},
-      {"repetitions of the baseline", "200", static_cast<double>(kRepetitions), "a chance of 0.0025 asks for more"},
-      {"rounds of the full solver's mapping at most", kNone, static_cast<double>(kRounds), "most come to rest in three"},
+      {"repetitions of the baseline", "200 (4.2)", static_cast<double>(kRepetitions), "a chance of 0.0025 asks for more"},
+      {"rounds of the full solver's mapping at most", kNone, static_cast<double>(kRounds), "where it has not come to rest the last one stands"},
       {"change of full scale at which it rests", kNone, kRest, "a sixth of what is material"},
-      {"simulated records of a next experiment", "50", static_cast<double>(kRecords), ""},
-      {"share that must decide to be likely to", "0.80", kLikely, "said as it is; below a half it is called unlikely"},
+      {"simulated records of a next experiment", "50 (4.2)", static_cast<double>(kRecords), ""},
+      {"share that must decide to be likely to", "0.80 (4.5, an aim)", kLikely, "the chance is told as it is; below a half it is called unlikely"},
       {"share of resamplings that choose a term that is told", kNone, kResampled, "a third of 30"},
   };
 }
@@ -136,7 +138,7 @@ std::vector<RuleText> listed(const HoldRules& k, const Rules& common) {
       {"clipped: times the next value's", kNone, k.clipped_times, "the same"},
       {"unexplained: twice the log likelihood", kNone, k.left_gain, spectral},
       {"unexplained: power over the noise's", kNone, k.left_power, "less is not material"},
-      {"share of the power that the names must hold", "0.70", k.named_share, "noise of a slow walk is power, too"},
+      {"share of the power that the names must hold", "0.70", k.named_share, "of the power, not of a misfit: what is left counts noise, too"},
   };
 }
 
