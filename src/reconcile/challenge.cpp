@@ -83,6 +83,18 @@ std::vector<std::string> files(const Dataset& d, const Group& g) {
   return out;
 }
 
+/// The part as the rest foretells it. What was marked was not fitted to begin with.
+Fit predicted(const Fitter& all, const Part& part, const Fit& start) {
+  const Dataset& d = all.model().data();
+  bool fitted = false;
+  Fitter rest(all);
+  for (std::size_t t = 0; t < rest.use.size(); ++t) {
+    rest.use[t] = !d.trials[t].hold_out && !part.trials[t];
+    fitted = fitted || (part.trials[t] && !d.trials[t].hold_out);
+  }
+  return all.transfer(fitted ? rest.fit(start.forms, start.base, start.params, {6, 1e-4}, &start) : start, part.trials);
+}
+
 }  // namespace
 
 double rate_of(const Dataset& d, const Trial& t) {
@@ -127,26 +139,17 @@ Challenge challenge(const Search& search, const Fit& base, const Fit& named, con
   const Fitter& all = search.fitter();
   const Dataset& d = all.model().data();
   const auto parts = parts_of(d, options.rules);
-  const bool marked = !parts.empty() && d.trials.size() > 0 && std::any_of(d.trials.begin(), d.trials.end(), [](const Trial& t) { return t.hold_out; });
+  const bool marked = std::any_of(d.trials.begin(), d.trials.end(), [](const Trial& t) { return t.hold_out; });
   Challenge out;
   out.how = marked ? "trials marked hold_out" : parts.empty() ? "nothing can be held out" : turn(parts);
-  const std::size_t kinds = &base == &named ? 1 : 2;  // nothing is named: one prediction serves as both
   std::vector<Fit> b(parts.size()), a(parts.size());
-  parallel(options.threads, kinds * parts.size(), [&](std::size_t k) {
+  const bool same = &base == &named;  // nothing is named: one prediction serves as both
+  parallel(options.threads, (same ? 1 : 2) * parts.size(), [&](std::size_t k) {
     stop_if_cancelled(options);
-    const std::size_t i = k / kinds;
-    const bool before = k % kinds == 0;
-    const Fit& start = before ? base : named;
-    Fit& result = before ? b[i] : a[i];
-    if (marked && i == 0) {
-      result = all.transfer(start, parts[i].trials);
-      return;
-    }
-    Fitter part(all);
-    for (std::size_t t = 0; t < part.use.size(); ++t) part.use[t] = !d.trials[t].hold_out && !parts[i].trials[t];
-    result = all.transfer(part.fit(start.forms, start.base, start.params, {6, 1e-4}, &start), parts[i].trials);
+    const std::size_t i = k % parts.size();
+    (k < parts.size() ? b : a)[i] = predicted(all, parts[i], k < parts.size() ? base : named);
   });
-  if (kinds == 1) a = b;
+  if (same) a = b;
   double before = 0, after = 0, sb = 0, sa = 0;
   int n = 0, m = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {

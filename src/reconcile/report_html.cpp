@@ -371,7 +371,9 @@ void closing(const Dataset& d, const Result& r, const std::string& program, std:
     for (const NotTestable& n : r.not_testable) s << row({info(n.effect).name, n.why, n.needs});
     s << "</table>\n";
   }
-  s << "<h2>Rules</h2><table>" << row({"rule", "discovery.md 4.3, or as said", "used here", "why, where different"}, "th");
+  s << "<h2>Stages</h2><table>";
+  for (const StageText& x : stages_of(d, r)) s << row({x.stage, x.summary});
+  s << "</table>\n<h2>Rules</h2><table>" << row({"rule", "discovery.md 4.3, or as said", "used here", "why, where different"}, "th");
   for (const RuleText& x : rules_of(d, r)) s << row({x.text, x.reference, number(x.value), x.why});
   s << "</table>\n";
   auto hardware = check_units(d, r.baseline);

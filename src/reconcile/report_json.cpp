@@ -171,6 +171,9 @@ void add_grounds(const Dataset& d, const Result& r, Json& j) {
   if (!r.residual_terms.empty()) j["residual_terms"] = json_of(r.residual_terms);
   j["tried"] = tried_json(r.tried);
   j["screened"] = screened_json(r.screened);
+  Json stages = Json::array();
+  for (const StageText& x : stages_of(d, r)) stages.push_back({{"stage", x.stage}, {"summary", x.summary}});
+  j["stages"] = stages;
   j["rules"] = rules_json(rules_of(d, r));
   if (r.alike_sets.size() > 1) j["ambiguity"] = ambiguity_json(r);
   if (r.detection) j["detection"] = detection_json(*r.detection);
