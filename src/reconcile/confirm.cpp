@@ -1,12 +1,11 @@
 #include "reconcile/confirm.h"
+#include "reconcile/rules.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace filum::reconcile {
 namespace {
-
-constexpr int kMostRounds = 6;
 
 std::vector<Eigen::MatrixXd> run_all(const Fitter& fitter, const FullSolver& solver, const Fit& f, bool fine, bool& good) {
   const Dataset& d = fitter.model().data();
@@ -45,7 +44,7 @@ std::vector<Eigen::MatrixXd> scaled(std::vector<Eigen::MatrixXd> a, const std::v
 FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& reduced, bool mesh) {
   FullFit out{reduced, {}, 0.0, 0.0, 0};
   const Dataset& d = fitter.model().data();
-  for (int round = 1; round <= kMostRounds; ++round) {
+  for (int round = 1; round <= assumed::kRounds; ++round) {
     bool good = true;
     std::vector<Eigen::MatrixXd> full = run_all(fitter, solver, out.fit, false, good), plain(d.trials.size());
     if (!good) return out.rounds = 0, out;
@@ -60,7 +59,7 @@ FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& r
     Fitter corrected(fitter);
     corrected.correction = out.correction;
     out.fit = corrected.fit(out.fit.forms, out.fit.base, out.fit.params, {10, 1e-6}, &out.fit);
-    if (moved < 1e-3) break;  // a sixth of what is material
+    if (moved < assumed::kRest) break;
   }
   if (!mesh) return out;
   bool good = true;

@@ -6,18 +6,21 @@
 #include <map>
 #include <set>
 
+#include "reconcile/challenge.h"
+#include "reconcile/choose.h"
 #include "reconcile/confirm.h"
-#include "reconcile/search.h"
+#include "reconcile/rivals.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
 
-std::vector<Effect> effects_in(const Fit& f) {
-  std::vector<Effect> out;
-  for (const Form* form : f.forms) out.push_back(form->effect);
-  return out;
+void add_squares(const Noise& noise, const Fit& f, double& sum, int& n) {
+  for (const auto& trial : f.residual)
+    for (std::size_t c = 0; c < trial.size(); ++c)
+      for (const double r : trial[c])
+        if (std::isfinite(r)) sum += std::pow(r / noise.output[c].sigma, 2), ++n;
 }
-
 std::string names(const std::vector<Effect>& effects) {
   std::string out;
   for (const Effect e : effects) out += (out.empty() ? "" : " + ") + info(e).name;
@@ -27,82 +30,6 @@ std::string names(const std::vector<Effect>& effects) {
 std::string form_text(const Fit& f) {
   std::string out;
   for (const Form* form : f.forms) out += (out.empty() ? "" : "; ") + form->text;
-  return out;
-}
-
-/// Groups of trials of one protocol; each is held out in turn.
-std::vector<std::vector<bool>> folds(const Dataset& d) {
-  std::map<std::string, std::vector<std::size_t>> groups;
-  for (std::size_t i = 0; i < d.trials.size(); ++i)
-    if (!d.trials[i].hold_out) groups[d.protocol_text(d.trials[i])].push_back(i);
-  std::vector<std::vector<std::size_t>> members;
-  for (auto& [key, g] : groups) members.push_back(g);
-  if (members.size() == 1 && members[0].size() > 1) {  // one protocol only: leave replicates out
-    const auto all = members[0];
-    members.clear();
-    for (const std::size_t i : all) members.push_back({i});
-  }
-  if (members.size() < 2) return {};
-  std::vector<std::vector<bool>> out(std::min<std::size_t>(4, members.size()), std::vector<bool>(d.trials.size(), false));
-  for (std::size_t g = 0; g < members.size(); ++g)
-    for (const std::size_t i : members[g]) out[g % out.size()][i] = true;
-  return out;
-}
-
-struct Challenge {
-  bool done = false;
-  double explained = 1.0;  // share of the held-out misfit that goes
-  Gap gap;
-  std::string how;
-  Fit before, after;       // predictions of the trials marked hold_out
-};
-
-void add_squares(const Noise& noise, const Fit& f, double& sum, int& n) {
-  for (const auto& trial : f.residual)
-    for (std::size_t c = 0; c < trial.size(); ++c)
-      for (const double r : trial[c])
-        if (std::isfinite(r)) sum += std::pow(r / noise.output[c].sigma, 2), ++n;
-}
-
-/// Predicts what was not fitted: the trials marked hold_out, else every protocol in turn.
-Challenge challenge(const Search& search, const Fit& base, const Fit& named, const Options& options) {
-  const Fitter& all = search.fitter();
-  const Dataset& d = all.model().data();
-  std::vector<bool> held(d.trials.size());
-  for (std::size_t i = 0; i < held.size(); ++i) held[i] = d.trials[i].hold_out;
-  const bool marked = std::find(held.begin(), held.end(), true) != held.end();
-  auto parts = marked ? std::vector<std::vector<bool>>{held} : folds(d);
-  Challenge out;
-  out.how = marked ? "trials marked hold_out" : parts.empty() ? "nothing can be held out" : "each protocol in turn";
-  std::vector<Fit> b(parts.size()), a(parts.size());
-  parallel(options.threads, 2 * parts.size(), [&](std::size_t k) {
-    stop_if_cancelled(options);
-    const std::size_t i = k / 2;
-    const Fit& start = k % 2 == 0 ? base : named;
-    Fit& result = k % 2 == 0 ? b[i] : a[i];
-    if (marked) {
-      result = all.transfer(start, held);
-      return;
-    }
-    Fitter part(all);
-    for (std::size_t t = 0; t < held.size(); ++t) part.use[t] = !d.trials[t].hold_out && !parts[i][t];
-    result = all.transfer(part.fit(start.forms, start.base, start.params, {6, 1e-4}, &start), parts[i]);
-  });
-  double before = 0, after = 0, sb = 0, sa = 0;
-  int n = 0, m = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    // a fold without which the effect cannot be learnt says nothing about transfer
-    if (a[i].chi2 > options.rules.fold_unlearnt * b[i].chi2 && parts.size() > 2) continue;
-    before += b[i].chi2 / search.dispersion() - b[i].samples;
-    after += a[i].chi2 / search.dispersion() - a[i].samples;
-    add_squares(all.noise(), b[i], sb, n);
-    add_squares(all.noise(), a[i], sa, m);
-  }
-  if (marked) out.before = b[0], out.after = a[0];
-  if (n == 0) return out;
-  out.gap = {std::sqrt(sb / n), std::sqrt(sa / m)};
-  out.done = before > options.rules.challenge * std::sqrt(2.0 * n);
-  if (out.done) out.explained = 1.0 - std::max(0.0, after) / before;
   return out;
 }
 
@@ -136,108 +63,6 @@ void list_tried(const Search& search, Result& r, const Fit* best) {
   }
 }
 
-/// Where the smaller set is silent, its form cannot be to blame for what is left: the share of the larger set's gain that comes from those
-/// samples. 0 where there are too few of them, or the gain there could be chance.
-double where_silent(const Search& search, const Fit& smaller, const Fit& larger, const Rules& rules) {
-  const Fitter& fitter = search.fitter();
-  Fit without = larger;
-  for (std::size_t k = without.forms.size(); k-- > 0;)
-    if (const auto mine = effects_in(smaller); std::find(mine.begin(), mine.end(), without.forms[k]->effect) != mine.end()) {
-      without.forms.erase(without.forms.begin() + static_cast<std::ptrdiff_t>(k));
-      without.params.erase(without.params.begin() + static_cast<std::ptrdiff_t>(k));
-    }
-  if (without.forms.size() + smaller.forms.size() != larger.forms.size()) return 0.0;
-  double gain = 0.0;
-  int silent = 0, all = 0;
-  for (std::size_t i = 0; i < larger.predicted.size(); ++i) {
-    if (larger.predicted[i].empty()) continue;
-    std::vector<Eigen::VectorXd> plain;
-    fitter.residual(static_cast<int>(i), fitter.setting(without, static_cast<int>(i)), nullptr, &plain);
-    Eigen::Index row = 0;  // of the whitened residual, which has no entry for a sample that is left out
-    for (std::size_t c = 0; c < plain.size(); ++c) {
-      const double least = rules.materiality * fitter.noise().output[c].full_scale;
-      for (Eigen::Index n = 0; n < plain[c].size(); ++n) {
-        if (!std::isfinite(larger.residual[i][c][n])) continue;
-        const auto at = row++;
-        ++all;
-        if (std::abs(plain[c][n] - larger.predicted[i][c][n]) > least) continue;
-        gain += (std::pow(smaller.white[i][at], 2) - std::pow(larger.white[i][at], 2)) / search.dispersion();
-        ++silent;
-      }
-    }
-  }
-  if (silent < rules.silent_least * all || gain < rules.detect) return 0.0;
-  return gain * search.dispersion() / std::max(smaller.chi2 - larger.chi2, 1e-300);
-}
-
-/// Chance that in a set where nothing is missing some effect does as well as this one: its score test (and no more than its fit bore out) among the
-/// best ones of the repetitions, so that the number of effects, forms and starting points looked at is paid for.
-double chance(const Search& search, const Fit& single, const Detection& detection, const std::vector<Score>& scores) {
-  if (single.forms[0]->line) return search.line_p(*single.forms[0], search.base());
-  double gain = 0.0;
-  for (const Score& s : scores)
-    if (s.form->effect == single.forms[0]->effect) gain = std::max(gain, s.gain);
-  gain = std::min(gain, search.base().chi2 - single.chi2) / search.dispersion();
-  const auto& null = detection.null_scores;
-  const auto above = null.end() - std::lower_bound(null.begin(), null.end(), gain);
-  return (1.0 + static_cast<double>(above)) / (1.0 + static_cast<double>(null.size()));
-}
-
-/// The smallest set that the next larger one does not beat.
-const Fit* choose(const Search& search, const Rules& rules, Detection& detection) {
-  const Fit* first = search.best(1);
-  if (first != nullptr) detection.chance = chance(search, *first, detection, Screen(search.fitter(), search.base()).all(search.forms()));
-  const Fit* now = nullptr;
-  for (std::size_t size = 1; size <= static_cast<std::size_t>(rules.most_effects); ++size) {
-    const Fit* next = search.best(size);
-    if (next == nullptr) break;
-    const Fit& before = now == nullptr ? search.base() : *now;
-    const double fall = search.bic(before) - search.bic(*next);
-    const double needed = now == nullptr ? rules.accept_evidence : rules.pair_evidence;
-    bool enough = fall >= needed && (now != nullptr || (before.chi2 - next->chi2) / search.dispersion() >= rules.detect);
-    // an instant read off the record is chosen among all: repetitions with the same instants do not know that
-    if (size == 1 && next->forms[0]->instants == 0 && !next->at_bound) enough = enough || (detection.chance <= rules.accept_p && (fall > 0.0 || next->forms[0]->line));
-    const double already = now == nullptr ? 0.0 : search.explained(*now), share = search.explained(*next) - already;
-    const double material = search.material(*next, before);
-    const bool earns = now == nullptr || share >= rules.pair_share || (share >= rules.pair_least && material >= rules.pair_material) ||
-                       (share >= rules.pair_clean && material >= 2.0 * rules.pair_material && share >= rules.pair_rest * (1.0 - already)) ||
-                       (material >= rules.pair_material && where_silent(search, before, *next, rules) >= rules.silent_share);
-    if (!enough || material < 1.0 || !earns) {
-      if (now == nullptr) continue;  // two effects may cancel in the test of singles
-      break;
-    }
-    now = next;
-  }
-  return now;
-}
-
-std::vector<const Fit*> rivals_of(const Search& search, const Fit& winner, const Rules& rules, const std::vector<NotTestable>& hidden) {
-  std::vector<const Fit*> out;
-  const bool unsure = std::any_of(winner.forms.begin(), winner.forms.end(), [&](const Form* f) {
-    return f->one_size || std::any_of(hidden.begin(), hidden.end(), [&](const NotTestable& n) { return n.effect == f->effect; });
-  });
-  const double tie = unsure ? rules.untestable_tie : rules.tie;
-  for (const Fit& f : search.candidates()) {
-    if (&f == &winner || f.forms.size() > winner.forms.size()) continue;
-    // a rival whose deciding protocol was not run is listed as not testable: it must come nearer to be a rival
-    const bool aside = !unsure && std::any_of(f.forms.begin(), f.forms.end(), [&](const Form* g) {
-      return std::any_of(hidden.begin(), hidden.end(), [&](const NotTestable& n) { return n.effect == g->effect; });
-    });
-    if (search.bic(f) - search.bic(winner) < (aside ? rules.aside_tie : tie) && search.explained(f) >= rules.explained) out.push_back(&f);
-  }
-  return out;
-}
-
-std::set<Effect> common(const Fit& winner, const std::vector<const Fit*>& rivals) {
-  const auto first = effects_in(winner);
-  std::set<Effect> shared(first.begin(), first.end());
-  for (const Fit* f : rivals) {
-    const auto mine = effects_in(*f);
-    std::erase_if(shared, [&](Effect e) { return std::find(mine.begin(), mine.end(), e) == mine.end(); });
-  }
-  return shared;
-}
-
 /// Median size of the gain errors that a fit asks of the records: what no instrument does is not explained.
 double gain_asked(const Fitter& fitter, const Fit& f) {
   std::vector<double> sizes;
@@ -262,6 +87,7 @@ Fit with_checked_steps(const Fitter& fitter, const Fit& f) {
 void note(const Challenge& c, Result& r) {
   r.held_out = c.gap;
   r.held_out_how = c.how;
+  r.folds = c.folds;
   r.held_before = c.before, r.held_after = c.after;
 }
 
@@ -304,34 +130,60 @@ bool leaves_a_part(const Search& search, const Fit& winner, const Rules& rules) 
 std::string what_would(const NextExperiment& next) {
   char text[60];
   std::snprintf(text, sizeof text, ", which decides in %.0f of 50 simulated repetitions", 50 * next.chance);
-  return (next.chance >= 0.5 ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + next.protocol + text + ".";
+  return (next.chance >= assumed::kLikely ? " What would: " : " No protocol on the list of this rig is likely to; nearest comes ") + next.protocol + text + ".";
 }
 
 /// The winner and its rivals, how alike they are, and the experiment that would part them.
-void leave_open(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, Result& r) {
-  r.verdict = "ambiguous";
-  r.effects.clear();
-  r.rivals.clear();
+void compare(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, Result& r) {
   std::vector<const Fit*> all = rivals;
   all.insert(all.begin(), &winner);
   std::vector<double> evidence;
-  std::string others;
   for (const Fit* f : all) {
-    r.rivals.push_back(as_rival(search, *f));
+    r.alike_sets.push_back(effects_in(*f));
     evidence.push_back(search.bic(*f));
-    if (f != &winner) others += (others.empty() ? "" : " or ") + names(effects_in(*f));
   }
-  r.sentence = "These trials cannot tell " + names(effects_in(winner)) + " from " + others + ".";
-  const Screen screen(search.fitter(), search.base());
-  r.correlation = screen.correlation(*winner.forms[0], winner.params[0], *rivals[0]->forms[0], rivals[0]->params[0]);
-  r.masked = screen.score(*winner.forms[0], winner.params[0]).masked;
+  r.alike = Screen(search.fitter(), search.base()).likeness(all);
   r.next = next_experiment(search.fitter(), all, evidence, search.dispersion(), r.rules.tie);
+}
+
+void leave_open(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, Result& r) {
+  r.verdict = "ambiguous";
+  r.effects.clear();
+  r.rivals = {as_rival(search, winner)};
+  std::string others;
+  for (const Fit* f : rivals) others += (others.empty() ? "" : " or ") + names(effects_in(*f)), r.rivals.push_back(as_rival(search, *f));
+  r.sentence = "These trials cannot tell " + names(effects_in(winner)) + " from " + others + ".";
+  compare(search, winner, rivals, r);
   if (r.next) r.sentence += what_would(*r.next);
 }
 
+/// What several sets share is named; what they do not share stays open.
+void name_common(const Search& search, const Fit& winner, const std::vector<const Fit*>& rivals, const std::set<Effect>& shared, Result& r) {
+  r.verdict = "effect";
+  r.partial = true;
+  std::erase_if(r.effects, [&](const NamedEffect& e) { return shared.count(e.effect) == 0; });
+  compare(search, winner, rivals, r);
+  std::string beside;
+  for (const auto& set : r.alike_sets) {
+    std::vector<Effect> rest;
+    std::copy_if(set.begin(), set.end(), std::back_inserter(rest), [&](Effect e) { return shared.count(e) == 0; });
+    beside += (beside.empty() ? "" : " or ") + (rest.empty() ? "nothing" : names(rest));
+  }
+  r.sentence = "All sets that explain the measurements share " + names({shared.begin(), shared.end()}) + "; what acts beside it is not decided: " + beside + "." + (r.next ? what_would(*r.next) : "");
+}
+
+/// What would make a name that leaves a part whole.
+std::string completed_by(const Rules& rules) {
+  char text[200];
+  std::snprintf(text, sizeof text, "; a further effect that lowers BIC by %.3g and takes away %.2g %% of the gap, beside values inside their range, would make it whole", rules.pair_evidence, 100 * rules.pair_share);
+  return text;
+}
+
 void name(const Search& search, const Fit& winner, Result& r, const Options& options) {
-  const auto rivals = rivals_of(search, winner, r.rules, r.not_testable);
+  auto rivals = rivals_of(search, winner, r.rules, r.not_testable);
   const Challenge c = challenge(search, search.base(), winner, options);
+  for (const Fit* f : instruments_not_outdone(search, winner, c, options))
+    if (std::find(rivals.begin(), rivals.end(), f) == rivals.end()) rivals.push_back(f);
   note(c, r);
   const bool confirmed = confirm(search, winner, options, r);
   estimate(search, winner, r);
@@ -347,12 +199,9 @@ void name(const Search& search, const Fit& winner, Result& r, const Options& opt
   if (rivals.empty()) {
     r.verdict = "effect";
     r.sentence = "The measurements behave as if " + names(effects_in(winner)) + (r.partial ? " acted, among something else that remains unnamed." : " acted, under these protocols.") +
-                 " A rival that came within " + std::to_string(static_cast<int>(r.rules.tie)) + " units of BIC would make it ambiguous.";
+                 " A rival that came within " + std::to_string(static_cast<int>(r.rules.tie)) + " units of BIC would make it ambiguous" + (r.partial ? completed_by(r.rules) : "") + ".";
   } else if (!shared.empty() && winner.forms.size() > 1) {
-    r.verdict = "effect";
-    r.partial = true;
-    std::erase_if(r.effects, [&](const NamedEffect& e) { return shared.count(e.effect) == 0; });
-    r.sentence = "All sets that explain the measurements share " + names({shared.begin(), shared.end()}) + "; what acts beside it is not decided.";
+    name_common(search, winner, rivals, shared, r);
   } else {
     leave_open(search, winner, rivals, r);
   }
@@ -406,9 +255,10 @@ std::string described(const Result& r) {
   const auto most = std::max_element(phases.begin(), phases.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   char text[240] = "";
   std::string out;
+  const bool several = r.noise.output.size() > 1;
   if (most != phases.end()) std::snprintf(text, sizeof text, " %.0f %% of it sits where the trials are in %s", 100 * most->second, most->first.c_str());
   out += text;
-  if (!r.shape.empty()) std::snprintf(text, sizeof text, "; it follows %s (in %.0f %% of resamplings)", r.shape[0].name.c_str(), 100 * r.shape[0].stability), out += text;
+  if (!r.shape.empty()) std::snprintf(text, sizeof text, "; %sit follows %s (in %.0f %% of resamplings)", several ? (r.shape[0].output + ": ").c_str() : "", r.shape[0].name.c_str(), 100 * r.shape[0].stability), out += text;
   std::snprintf(text, sizeof text, ". A candidate that takes away %.0f %% of it, and %.0f %% in protocols it was not fitted to, would change this.", 100 * r.rules.explained, 100 * r.rules.held_out);
   return out + (out.empty() ? text + 1 : text);
 }
@@ -419,6 +269,7 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   r.numerics = solver_error(fitter, winner != nullptr ? *winner : search.base());
   r.numerics.sensitivities = check_sensitivities(fitter, winner != nullptr ? *winner : search.base());
   r.noise = fitter.noise();
+  r.starts = search.baseline();
   r.dispersion = search.dispersion();
   r.before = search.base();
   r.after = winner != nullptr ? *winner : search.base();
@@ -426,8 +277,8 @@ void finish(const Search& search, const Fit* winner, Result& r) {
   r.structure_before = search.structure(search.base()).z;
   r.structure_after = search.structure(r.after).z;
   if (r.verdict != "agree" && r.verdict != "parameter") r.where = localise(fitter.model(), r.before, r.noise), r.where_by = localise_by(fitter.model(), r.before, r.noise);
-  r.residual_terms = describe(fitter.model(), r.before);
-  if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after);
+  r.residual_terms = describe(fitter.model(), r.before, r.noise);
+  if (r.verdict == "unknown" || r.partial) r.shape = describe(fitter.model(), r.verdict == "unknown" ? r.before : r.after, r.noise);
   if (r.verdict == "unknown") r.sentence += described(r);
   list_tried(search, r, winner);
 }

@@ -7,11 +7,12 @@
 #include <cmath>
 
 #include "reconcile/search.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
 
-constexpr int kRepetitions = 2000;
+using assumed::kRepetitions;
 
 double best_score(const std::vector<Screen::Direction>& directions, const std::vector<Eigen::VectorXd>& y) {
   double best = 0.0;

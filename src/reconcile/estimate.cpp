@@ -1,25 +1,20 @@
-// Values with 95 % intervals from the curvature at the optimum (widened by the overdispersion), and the shape of what no effect explains.
+// Values with 95 % intervals from the curvature at the optimum (widened by the overdispersion).
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "base/rng.h"
 #include "reconcile/result.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
 
 constexpr double kTwoSided = 1.96;
-constexpr double kForm = 0.02;   // relative, 1 sd: gain error of the sensor and the form of the law, which no fit can see
-constexpr double kWiden = 2.1;   // curvature understates the spread of nonlinear fits whose law is not quite the true one (development half: 90 to 93 % cover)
 
-constexpr double kClock = 1e-4;  // relative, 1 sd: rate of a clock, all that a line's frequency owes to the instrument
-
-Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high, double form = kForm) {
+Estimate estimate(const std::string& name, const std::string& unit, double value, double sd, bool logarithmic, double low, double high, double form = assumed::kForm) {
   if (!std::isfinite(sd)) return {name, unit, value, low, high};
-  sd = logarithmic ? std::hypot(kWiden * sd, form) : std::hypot(kWiden * sd, form * std::abs(value));
+  sd = logarithmic ? std::hypot(assumed::kWiden * sd, form) : std::hypot(assumed::kWiden * sd, form * std::abs(value));
   if (logarithmic) return {name, unit, value, std::max(low, value * std::exp(-kTwoSided * std::min(sd, 20.0))), std::min(high, value * std::exp(kTwoSided * std::min(sd, 20.0)))};
   return {name, unit, value, std::max(low, value - kTwoSided * sd), std::min(high, value + kTwoSided * sd)};
 }
@@ -33,7 +28,7 @@ double deviation(const Fit& f, std::size_t k, double dispersion) {
 double line_blur(const Dataset& d, double frequency) {
   std::vector<double> steps;
   for (const Trial& t : d.trials) steps.push_back((t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1));
-  const double phase = 6.283185307179586 * frequency * 0.05 * median(steps);
+  const double phase = 6.283185307179586 * frequency * assumed::kJitter * median(steps);
   return std::expm1(std::min(0.5 * phase * phase, 3.0));
 }
 
@@ -70,7 +65,7 @@ Estimate amplitude(const Fitter& fitter, const Fit& f, const Form& form, const s
   const double mid = median(all);
   double var = 0.0;
   for (const double a : all) var += (a - mid) * (a - mid) / std::max<double>(1.0, static_cast<double>(all.size()) - 1.0);
-  const double half = 1.4 * kTwoSided * std::sqrt(var / static_cast<double>(std::max<std::size_t>(1, all.size()))) + 0.02 * mid;
+  const double half = assumed::kLineWiden * kTwoSided * std::sqrt(var / static_cast<double>(std::max<std::size_t>(1, all.size()))) + assumed::kForm * mid;
   const double blur = line_blur(d, p[0]);
   std::string unit = "-";
   for (const ChannelInfo& c : info(d.rig).channels)
@@ -110,7 +105,7 @@ std::vector<NamedEffect> effect_estimates(const Fitter& fitter, const Fit& fit, 
     NamedEffect named{form.effect, form.text, {}};
     for (std::size_t i = 0; i < form.params.size(); ++i, ++k) {
       const ParamSpec& p = form.params[i];
-      Estimate e = estimate(p.name, p.unit, fit.params[f][i], deviation(fit, k, dispersion), p.logarithmic, p.low, p.high, form.effect == Effect::mains_hum ? kClock : kForm);
+      Estimate e = estimate(p.name, p.unit, fit.params[f][i], deviation(fit, k, dispersion), p.logarithmic, p.low, p.high, form.effect == Effect::mains_hum ? assumed::kClock : assumed::kForm);
       if (p.times_baseline >= 0) {
         const double b = fit.base[static_cast<std::size_t>(p.times_baseline)];
         e.value *= b, e.low *= b, e.high *= b;
@@ -136,78 +131,6 @@ void widen_by_forms(std::vector<NamedEffect>& effects, const std::vector<NamedEf
         for (const Estimate& q : o.parameters)
           if (q.name == p.name && q.unit == p.unit && std::isfinite(q.value)) p.low = std::min(p.low, q.value), p.high = std::max(p.high, q.value);
     }
-}
-
-std::vector<Term> describe(const RigModel& model, const Fit& base) {
-  const Dataset& d = model.data();
-  std::string input;
-  for (const Channel& c : d.channels)
-    if (c.input && c.name != "time" && input.empty()) input = c.name;
-  if (input.empty()) return {};
-  const double fs = model.full_scale(d.outputs[0]);
-  const std::vector<std::string> names = {"1", input, "rate", "time", "output", input + "^2", "|rate|", "sign(rate)", input + "*time", input + "*rate", "output*rate", "output*time", input + "^3", "output^2", "rate*|rate|"};
-  const int terms = static_cast<int>(names.size());
-  std::vector<Eigen::RowVectorXd> rows;
-  std::vector<double> y;
-  std::vector<int> trial;
-  for (std::size_t i = 0; i < base.residual.size(); ++i) {
-    if (base.residual[i].empty()) continue;
-    const Trial& t = d.trials[i];
-    const Eigen::VectorXd& x = t.at(input);
-    const double most = std::max(x.cwiseAbs().maxCoeff(), 1e-300), span = t.time[t.samples() - 1] - t.time[0];
-    const int step = std::max(1, t.samples() / 300);
-    for (int k = step; k < t.samples(); k += step) {
-      const double r = base.residual[i][0][k];
-      if (!std::isfinite(r)) continue;
-      const double u = x[k] / most, v = (x[k] - x[k - step]) / most / (t.time[k] - t.time[k - step]) * 0.1 * span, s = (t.time[k] - t.time[0]) / span, f = base.predicted[i][0][k] / fs;
-      Eigen::RowVectorXd row(terms);
-      row << 1, u, v, s, f, u * u, std::abs(v), (v > 1e-9) - (v < -1e-9), u * s, u * v, f * v, f * s, u * u * u, f * f, v * std::abs(v);
-      rows.push_back(row);
-      y.push_back(r / fs);
-      trial.push_back(static_cast<int>(i));
-    }
-  }
-  if (rows.size() < 30) return {};
-  // orthogonal matching pursuit of three terms on 30 resamplings of blocks; stability is how often a term is chosen
-  Rng rng(20260101);
-  std::map<int, int> chosen;
-  std::map<int, double> coefficient;
-  const std::size_t n = rows.size(), block = 20;
-  constexpr int kRounds = 30;
-  for (int round = 0; round < kRounds; ++round) {
-    Eigen::MatrixXd X(static_cast<Eigen::Index>(n), terms);
-    Eigen::VectorXd z(static_cast<Eigen::Index>(n));
-    for (std::size_t k = 0; k < n; ++k) {
-      static thread_local std::size_t start = 0;
-      if (k % block == 0) start = static_cast<std::size_t>(rng.below(n - std::min(block, n - 1)));
-      const std::size_t at = std::min(n - 1, start + k % block);
-      X.row(static_cast<Eigen::Index>(k)) = rows[at];
-      z[static_cast<Eigen::Index>(k)] = y[at];
-    }
-    std::vector<int> active;
-    Eigen::VectorXd left = z, beta;
-    for (int m = 0; m < 3; ++m) {
-      int best = -1;
-      double most = 0.0;
-      for (int j = 0; j < terms; ++j) {
-        const double norm = X.col(j).norm();
-        if (norm < 1e-9 || std::find(active.begin(), active.end(), j) != active.end()) continue;
-        const double c = std::abs(X.col(j).dot(left)) / norm;
-        if (c > most) most = c, best = j;
-      }
-      if (best < 0) break;
-      active.push_back(best);
-      const Eigen::MatrixXd A = X(Eigen::all, active);
-      beta = A.colPivHouseholderQr().solve(z);
-      left = z - A * beta;
-    }
-    for (std::size_t m = 0; m < active.size(); ++m) ++chosen[active[m]], coefficient[active[m]] += beta[static_cast<Eigen::Index>(m)];
-  }
-  std::vector<Term> out;
-  for (const auto& [j, count] : chosen)
-    if (count >= kRounds / 3) out.push_back({names[static_cast<std::size_t>(j)], coefficient[j] / count, static_cast<double>(count) / kRounds});
-  std::stable_sort(out.begin(), out.end(), [](const Term& a, const Term& b) { return a.stability > b.stability; });
-  return out;
 }
 
 }  // namespace filum::reconcile

@@ -8,13 +8,14 @@
 
 #include "reconcile/model.h"
 #include "reconcile/noise.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 
 struct Noise {
   std::vector<OutputNoise> output;
   double scatter = 0.01;       // standard deviation of the logarithm of a record's stiffness
-  double gain_scatter = 0.006; // of a record's output gain, and of an instrument's (contract: up to 1 %, evenly: 0.0058)
+  double gain_scatter = assumed::kGainScatter;  // of a record's output gain, and of an instrument's (contract: up to 1 %, evenly: 0.0058)
 };
 
 struct FitOptions {

@@ -12,6 +12,7 @@
 
 #include "base/rng.h"
 #include "reconcile/result.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
@@ -150,7 +151,7 @@ struct Outcome {
 Outcome outcome_of(const std::vector<Rival>& rivals, double tie) {
   Rng rng(7);
   int decided = 0, remaining = 0;
-  for (std::size_t i = 0; i < 50; ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(assumed::kRecords); ++i) {
     const Rival& truth = rivals[i % rivals.size()];
     Eigen::VectorXd z(truth.J.cols()), y = truth.y;
     for (double& v : z) v = rng.normal();
@@ -161,7 +162,7 @@ Outcome outcome_of(const std::vector<Rival>& rivals, double tie) {
     decided += others == 0 ? 1 : 0;
     remaining += 1 + static_cast<int>(others);
   }
-  return {decided / 50.0, remaining / 50.0};
+  return {decided / static_cast<double>(assumed::kRecords), remaining / static_cast<double>(assumed::kRecords)};
 }
 
 /// Share of the pairs that a record is to decide: twice the log likelihood ratio of two rivals is normal, mean T and variance 4 T (Cox 1961).

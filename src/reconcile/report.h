@@ -14,6 +14,11 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
 
 /// The rules that this rig's verdict went by.
 std::vector<RuleText> rules_of(const Dataset& d, const Result& r);
+/// What each stage of the pipeline did, in a sentence.
+struct StageText {
+  std::string stage, summary;
+};
+std::vector<StageText> stages_of(const Dataset& d, const Result& r);
 /// Writes all files of a result into a folder, made if need be.
 void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program);
 

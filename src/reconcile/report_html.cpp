@@ -43,6 +43,12 @@ std::string quantity(double v, const std::string& unit) {
   return plain && std::isfinite(v) && v != 0.0 ? format_prefixed(v, unit) : number(v) + (unit == "-" ? "" : " " + unit);
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& w : words) out += (out.empty() ? "" : ", ") + w;
+  return out;
+}
+
 std::string at_most(double share) { return share < 1e-5 ? "less than 0.001 %" : "at most " + number(100 * share, 2) + " %"; }
 
 std::string interval(const Estimate& e) { return quantity(e.value, e.unit) + " (" + quantity(e.low, e.unit) + " to " + quantity(e.high, e.unit) + ")"; }
@@ -169,7 +175,28 @@ void heat(const Dataset& d, const Result& r, std::ostringstream& s) {
   s << "</table>\n";
 }
 
-void checks(const Result& r, std::ostringstream& s) {
+/// Whether the baseline was lucky with its start.
+void starts(const Dataset& d, const Result& r, std::ostringstream& s) {
+  const BaselineSummary& b = r.starts;
+  if (b.starts.empty()) return;
+  double best = INFINITY;
+  for (const BaselineStart& x : b.starts) best = std::min(best, x.chi2);
+  s << "<h2>Starts of the baseline</h2><p>" << b.same() << " of " << b.starts.size() << " starts ended at the same optimum"
+    << (b.same() < static_cast<int>(b.starts.size()) ? "; the best was kept" : "") << ". A start counts where its chi-squared is within " << number(r.rules.start_same) << " or " << number(100 * r.rules.start_share) << " % of the best.</p><table>"
+    << row({"start", "ended at", "chi-squared above the best"}, "th");
+  const auto values = [&](const std::vector<double>& x) {
+    std::string out;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const ParameterInfo& p = info(d.rig).baseline[i];
+      if (std::find(d.free.begin(), d.free.end(), p.name) != d.free.end()) out += (out.empty() ? "" : ", ") + p.name + " " + quantity(x[i], p.unit);
+    }
+    return out;
+  };
+  for (const BaselineStart& x : b.starts) s << row({values(x.from), values(x.to), number(x.chi2 - best, 3)});
+  s << "</table>\n";
+}
+
+void checks(const Dataset& d, const Result& r, std::ostringstream& s) {
   if (r.detection) {
     const Detection& x = *r.detection;
     s << "<h2>Is anything missing?</h2><p>The largest sum of the baseline's residual over any window is " << number(x.statistic, 3) << " standard deviations (" << escaped(x.trial) << ", " << number(x.from) << " s to " << number(x.to)
@@ -190,6 +217,7 @@ void checks(const Result& r, std::ostringstream& s) {
                            : "Derivatives by differences at one and at two steps disagree for " + escaped(doubtful) + ": intervals of these rest on a kink of the model and are to be doubted.")
       << "</p>\n";
   }
+  starts(d, r, s);
   if (!r.confirmation) return;
   const Confirmation& c = *r.confirmation;
   s << "<h2>Full re-simulation</h2>";
@@ -207,7 +235,10 @@ void checks(const Result& r, std::ostringstream& s) {
 
 void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
   s << "<h2>Gap</h2><p>Root-mean-square residual over the noise's standard deviation; 1 is perfect.</p><table>" << row({"", "before", "after"}, "th")
-    << row({"fitted trials", number(r.fit.before, 3), number(r.fit.after, 3)}) << row({"held out (" + r.held_out_how + ")", number(r.held_out.before, 3), number(r.held_out.after, 3)}) << "</table><table>"
+    << row({"fitted trials", number(r.fit.before, 3), number(r.fit.after, 3)}) << row({"held out (" + r.held_out_how + ")", number(r.held_out.before, 3), number(r.held_out.after, 3)}) << "</table>";
+  if (!r.folds.empty()) s << "<p>Fitted without these trials, then asked for them; only the records' own scales were fitted to them.</p><table>" << row({"held out", "trials", "before", "after", ""}, "th");
+  for (const Fold& f : r.folds) s << row({f.held, joined(f.trials), number(f.gap.before, 3), number(f.gap.after, 3), f.counts ? "" : "does not count: " + f.why});
+  s << (r.folds.empty() ? "<table>" : "</table><table>")
     << row({"output", "noise, 1 sd", "from", "correlation of neighbours", "share without memory", "samples", "worth, if independent", "full scale"}, "th");
   for (std::size_t c = 0; c < r.noise.output.size(); ++c) {
     const OutputNoise& o = r.noise.output[c];
@@ -295,23 +326,42 @@ void residual_after(const Dataset& d, const Result& r, std::ostringstream& s) {
 }
 
 /// A term with the output's own name.
-std::string in_words(const Dataset& d, std::string term) {
-  if (const std::size_t at = term.find("output"); at != std::string::npos) term.replace(at, 6, d.outputs[0]);
+std::string in_words(const Term& t) {
+  std::string term = t.name;
+  if (const std::size_t at = term.find("output"); at != std::string::npos) term.replace(at, 6, t.output);
   return term;
+}
+
+/// How alike the signatures of all sets are that the data do not tell apart.
+void ambiguity(const Result& r, std::ostringstream& s) {
+  if (r.alike_sets.size() < 2) return;
+  s << "<h2>How alike they are</h2><p>Correlation of the signatures of each two sets, in what a refit of the baseline cannot answer (1 or -1: no record of these trials tells them apart), and the share of each that such a refit hides.</p><table>";
+  std::vector<std::string> head = {""};
+  for (const auto& set : r.alike_sets) head.push_back(names(set));
+  head.push_back("hidden by a refit");
+  s << row(head, "th");
+  for (std::size_t i = 0; i < r.alike_sets.size(); ++i) {
+    std::vector<std::string> cells = {names(r.alike_sets[i])};
+    for (std::size_t k = 0; k < r.alike_sets.size(); ++k) cells.push_back(number(r.alike.correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)), 3));
+    cells.push_back(number(100 * r.alike.masked[i], 3) + " %");
+    s << row(cells);
+  }
+  s << "</table>\n";
 }
 
 void closing(const Dataset& d, const Result& r, const std::string& program, std::ostringstream& s) {
   if (!r.shape.empty()) {
     if (d.rig == Rig::tip_hold) s << "<h2>Shape of what is not explained</h2><p>The octave of the spectrum with most power beside what is named; stability is the share of 30 resamplings of the records that chose it.</p><table>" << row({"band", "times the noise's power", "stability"}, "th");
-    else s << "<h2>Shape of what is not explained</h2><p>Sparse regression of the residual, in parts of full scale, on terms scaled to 1; stability is the share of 30 resamplings that chose the term.</p><table>" << row({"term", "coefficient", "stability"}, "th");
-    for (const Term& t : r.shape) s << row({in_words(d, t.name), number(t.coefficient, 3), number(t.stability, 2)});
+    else s << "<h2>Shape of what is not explained</h2><p>Sparse regression of the residual, in parts of full scale, on terms scaled to 1; stability is the share of 30 resamplings that chose the term.</p><table>" << row({"output", "term", "coefficient", "stability"}, "th");
+    for (const Term& t : r.shape) s << (d.rig == Rig::tip_hold ? row({t.name, number(t.coefficient, 3), number(t.stability, 2)}) : row({t.output, in_words(t), number(t.coefficient, 3), number(t.stability, 2)}));
     s << "</table>\n";
   }
   if (r.verdict == "ambiguous") {
     s << "<h2>Rivals</h2><table>" << row({"effects", "form", "behind the best, BIC", "explains"}, "th");
     for (const Tried& t : r.rivals) s << row({names(t.effects), t.form, number(t.evidence - r.rivals[0].evidence, 3), number(100 * t.explained, 3) + " %"});
-    s << "</table><p>The signatures of the first two correlate by " << number(r.correlation, 3) << "; a refit of the baseline hides " << number(100 * r.masked, 3) << " % of the first one's.</p>\n";
+    s << "</table>";
   }
+  ambiguity(r, s);
   if (r.next) s << "<h2>Next experiment</h2><p>" << escaped(r.next->protocol) << ": " << escaped(r.next->why) << ". It would decide in " << number(100 * r.next->chance, 3) << " % of 50 simulated repetitions.</p>\n";
   s << "<h2>Not testable with these trials</h2>";
   if (r.not_testable.empty()) {
@@ -321,8 +371,10 @@ void closing(const Dataset& d, const Result& r, const std::string& program, std:
     for (const NotTestable& n : r.not_testable) s << row({info(n.effect).name, n.why, n.needs});
     s << "</table>\n";
   }
-  s << "<h2>Rules</h2><table>" << row({"rule", "value"}, "th");
-  for (const auto& [text, value] : rules_of(d, r)) s << row({text, number(value)});
+  s << "<h2>Stages</h2><table>";
+  for (const StageText& x : stages_of(d, r)) s << row({x.stage, x.summary});
+  s << "</table>\n<h2>Rules</h2><table>" << row({"rule", "discovery.md 4.3, or as said", "used here", "why, where different"}, "th");
+  for (const RuleText& x : rules_of(d, r)) s << row({x.text, x.reference, number(x.value), x.why});
   s << "</table>\n";
   auto hardware = check_units(d, r.baseline);
   for (const HardwareCheck& h : check_hardware(d)) hardware.push_back(h);
@@ -357,7 +409,7 @@ std::string report_html(const Dataset& d, const Result& r, const std::string& pr
   s << escaped(r.sentence) << "</p>\n";
   curves(d, r, s);
   heat(d, r, s);
-  checks(r, s);
+  checks(d, r, s);
   tables(d, r, s);
   residual_after(d, r, s);
   closing(d, r, program, s);

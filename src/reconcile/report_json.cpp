@@ -28,7 +28,7 @@ Json json_of(const std::vector<Estimate>& all) {
 
 Json json_of(const std::vector<Term>& terms) {
   Json out = Json::array();
-  for (const Term& t : terms) out.push_back({{"term", t.name}, {"coefficient", finite(t.coefficient)}, {"stability", t.stability}});
+  for (const Term& t : terms) out.push_back({{"term", t.name}, {"coefficient", finite(t.coefficient)}, {"stability", t.stability}, {"output", t.output}});
   return out;
 }
 
@@ -94,7 +94,7 @@ Json screened_json(const std::vector<Screened>& all) {
 
 Json rules_json(const std::vector<RuleText>& rules) {
   Json out = Json::array();
-  for (const RuleText& x : rules) out.push_back({{"rule", x.text}, {"value", x.value}});
+  for (const RuleText& x : rules) out.push_back({{"rule", x.text}, {"value", x.value}, {"reference", x.reference}, {"why", x.why}});
   return out;
 }
 
@@ -108,6 +108,42 @@ Json confirmation_json(const Confirmation& c) {
   for (const NamedEffect& e : c.values) values[info(e.effect).name] = json_of(e.parameters);
   return {{"solver", c.solver}, {"ran", c.ran}, {"holds", c.holds}, {"difference", finite(c.difference)}, {"mesh", finite(c.mesh)}, {"evidence", finite(-c.evidence)},
           {"share", finite(c.share)}, {"parameters", values}};
+}
+
+/// Of all sets that are not told apart; `correlation` and `masked` are those of the first two and of the first.
+Json ambiguity_json(const Result& r) {
+  Json sets = Json::array(), rows = Json::array(), masked = Json::array();
+  const auto n = r.alike.correlation.rows();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    Json one = Json::array();
+    for (Eigen::Index j = 0; j < n; ++j) one.push_back(finite(r.alike.correlation(i, j)));
+    rows.push_back(std::move(one));
+    sets.push_back(names(r.alike_sets[k]));
+    masked.push_back(finite(r.alike.masked[k]));
+  }
+  return {{"correlation", finite(r.alike.correlation(0, 1))}, {"masked", finite(r.alike.masked[0])}, {"sets", sets}, {"correlations", rows}, {"masked_each", masked}};
+}
+
+Json folds_json(const std::vector<Fold>& folds) {
+  Json out = Json::array();
+  for (const Fold& f : folds) {
+    Json one = {{"held_out", f.held}, {"trials", f.trials}, {"before", finite(f.gap.before)}, {"after", finite(f.gap.after)}, {"counts", f.counts}};
+    if (!f.counts) one["why"] = f.why;
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+Json starts_json(const Dataset& d, const BaselineSummary& b) {
+  const auto values = [&](const std::vector<double>& x) {
+    Json out = Json::object();
+    for (std::size_t i = 0; i < x.size(); ++i) out[info(d.rig).baseline[i].name] = finite(x[i]);
+    return out;
+  };
+  Json starts = Json::array();
+  for (const BaselineStart& s : b.starts) starts.push_back({{"from", values(s.from)}, {"to", values(s.to)}, {"chi2", finite(s.chi2)}, {"same", s.same}});
+  return {{"same", b.same()}, {"of", b.starts.size()}, {"starts", starts}};
 }
 
 Json numerics_json(const Numerics& n) {
@@ -135,10 +171,14 @@ void add_grounds(const Dataset& d, const Result& r, Json& j) {
   if (!r.residual_terms.empty()) j["residual_terms"] = json_of(r.residual_terms);
   j["tried"] = tried_json(r.tried);
   j["screened"] = screened_json(r.screened);
+  Json stages = Json::array();
+  for (const StageText& x : stages_of(d, r)) stages.push_back({{"stage", x.stage}, {"summary", x.summary}});
+  j["stages"] = stages;
   j["rules"] = rules_json(rules_of(d, r));
-  if (r.verdict == "ambiguous") j["ambiguity"] = {{"correlation", finite(r.correlation)}, {"masked", finite(r.masked)}};
+  if (r.alike_sets.size() > 1) j["ambiguity"] = ambiguity_json(r);
   if (r.detection) j["detection"] = detection_json(*r.detection);
   if (r.confirmation) j["confirmation"] = confirmation_json(*r.confirmation);
+  j["baseline_starts"] = starts_json(d, r.starts);
   j["numerics"] = numerics_json(r.numerics);
   j["hardware"] = hardware_json(d, r);
   j["notices"] = d.notices;
@@ -160,7 +200,7 @@ Json report_json(const Dataset& d, const Result& r) {
   j["rivals"] = rivals_json(r);
   j["gap"] = {{"noise", noise_json(d, r)},
               {"fit", {{"before", finite(r.fit.before)}, {"after", finite(r.fit.after)}}},
-              {"held_out", {{"before", finite(r.held_out.before)}, {"after", finite(r.held_out.after)}, {"how", r.held_out_how}}}};
+              {"held_out", {{"before", finite(r.held_out.before)}, {"after", finite(r.held_out.after)}, {"how", r.held_out_how}, {"folds", folds_json(r.folds)}}}};
   j["where"] = where_json(r.where);
   j["where_by"] = where_by_json(r.where_by);
   j["not_testable"] = not_testable_json(r.not_testable);

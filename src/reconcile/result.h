@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "reconcile/baseline.h"
 #include "reconcile/dataset.h"
 #include "reconcile/fit.h"
 #include "reconcile/numerics.h"
@@ -57,6 +58,17 @@ struct Gap {
   double before = 0.0, after = 0.0;  // rms residual over the noise's standard deviation
 };
 
+/// Trials that were held out together, and what was left of them.
+struct Fold {
+  std::string held;                 // by what
+  std::vector<std::string> trials;  // files
+  Gap gap;
+  double before = 0.0, after = 0.0; // chi2 over the overdispersion, less the samples
+  int samples = 0;
+  bool counts = true;               // in the held-out gap and criterion;
+  std::string why;                  // else why not
+};
+
 struct NextExperiment {
   std::string protocol, why;
   double chance = 0.0;  // of telling the rivals apart, of 50 simulated repetitions
@@ -65,6 +77,7 @@ struct NextExperiment {
 struct Term {
   std::string name;
   double coefficient = 0.0, stability = 0.0;
+  std::string output = {};  // whose residual it is a term of
 };
 
 /// What the trainer's own solver says of a name (confirm.h).
@@ -102,6 +115,7 @@ struct Result {
   Noise noise;
   Gap fit, held_out;
   std::string held_out_how;
+  std::vector<Fold> folds;
   std::vector<Cell> where;
   std::vector<Share> where_by;
   std::vector<Screened> screened;   // every effect of the rig by the score test of the baseline's residual
@@ -109,12 +123,13 @@ struct Result {
   std::optional<NextExperiment> next;
   std::optional<Confirmation> confirmation;
   std::optional<Detection> detection;
+  BaselineSummary starts;           // of the baseline; empty where nothing is free
   Numerics numerics;                // solver error and sensitivities of the fit that the verdict rests on
   std::vector<Term> shape;          // of an unknown effect: residual = sum coefficient * term, in units of full scale
   std::vector<Term> residual_terms; // the same of the baseline's residual, whatever the verdict (for comparison, see baselines.py)
   double dispersion = 1.0, structure_before = 0.0, structure_after = 0.0;
-  double correlation = 0.0;         // of the signatures of the first two rivals
-  double masked = 0.0;              // share of the first rival's signature that a refit of the baseline hides
+  std::vector<std::vector<Effect>> alike_sets;  // sets that the data do not tell apart, the best first, and
+  Likeness alike;                   // how alike their signatures are
   Fit before, after;                // for the plots
   Fit held_before, held_after;      // the same of trials marked hold_out; empty without them
   std::vector<Form> forms;          // owned here, since fits point to them
@@ -142,7 +157,8 @@ std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& 
 /// The same axis by axis: trial, output, phase, strain (or the input), rate, cycle, band of frequency. Axes on which there is one bin only are left out.
 std::vector<Share> localise_by(const RigModel& model, const Fit& base, const Noise& noise);
 Gap gap_of(const Noise& noise, const Fit& before, const Fit& after);
-std::vector<Term> describe(const RigModel& model, const Fit& base);
+/// Terms of every output's residual over every input, its rate, time and products, that are stable over resampling: the output of which most is left first.
+std::vector<Term> describe(const RigModel& model, const Fit& fit, const Noise& noise);
 /// `evidence`: BIC of each rival (less is better); `tie`: by how much one must lead.
 std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::vector<const Fit*>& rivals, const std::vector<double>& evidence, double dispersion, double tie);
 std::vector<Estimate> baseline_estimates(const Fitter& fitter, const Fit& fit, double dispersion);

@@ -39,6 +39,7 @@ struct Rules {
   double testable = 16.0;            // squared signal to noise (noise 1 % of full scale) below which an effect cannot be seen
   double screen_share = 0.20;        // of the best score: effects below are not fitted
   int screen_most = 8;
+  int kept_most = 14;                // sets that are fitted again when the noise is known; instruments alone in any case
   double screen_least = 6.0;         // fall of chi2 that a score test must promise
   double line_seen = 0.05;           // chance below which each of two lines that are named together must stand out
   double line_folded = 6.0;          // cycles a record: where slow sampling folds hum to less, the record does not count for it
@@ -48,7 +49,12 @@ struct Rules {
   double overdispersed = 3.0;        // standard deviations of structure left in the best fit from which it counts as noise in all comparisons
   double look_further = 3.5;         // standard deviations of structure left from which a further effect is looked for
   double challenge = 4.0;            // standard deviations of the held-out misfit from which its fall is judged
+  int folds = 4;                     // at most, of protocols; those on purpose among them
+  double rate_apart = 1.5;           // times slower than the fastest, from which on a trial is of another rate
   double fold_unlearnt = 3.0;        // a protocol that the effect makes this much worse could not teach it, and does not count (of three or more)
+  double start_factor = 5.0;         // times the first guess and its inverse: further starts of the baseline
+  double start_same = 1.0;           // chi2 above the best start's, up to which another ended at the same optimum, or
+  double start_share = 1e-3;         // this share of it
   double refit = 12.0;               // fall of chi2 a free parameter from which a refit within the prior is a verdict
 };
 
@@ -69,10 +75,46 @@ struct HoldRules {
   double named_share = 0.3;          // of the power that the names must hold beside it
 };
 
-/// One line of the report's table.
+/// What the stages take as given. Not to be set from outside, but listed with the rest.
+namespace assumed {
+inline constexpr double kFirstNoise = 0.02;      // of full scale, of an output of which nothing is stated, until the first fit
+inline constexpr double kLintNoise = 0.01;       // of full scale, in which lint asks what could be seen, where none is stated that is less
+inline constexpr double kFirstScatter = 0.10;    // of the records' stiffness, until replicates have been fitted (contract: 5-10 %)
+inline constexpr double kScatterLow = 0.008, kScatterHigh = 0.15;  // within which replicates' scatter is believed
+inline constexpr double kScatterAlone = 0.012;   // without replicates; more would hide what differs between protocols
+inline constexpr double kBladeScatter = 0.2;     // of blades of two sizes: the factor of a punch is an estimate
+inline constexpr double kGainScatter = 0.006;    // of a record's gain and an instrument's (contract: up to 1 %, evenly: 0.0058)
+inline constexpr double kWhiteWorth = 8.0;       // of twice the log likelihood, for a share of noise without memory: once in 200 sets where there is none
+inline constexpr double kStatedMost = 1.15;      // times the noise that is stated: what jitter and the converter may add to it
+inline constexpr double kMemoryLeast = 0.08;     // correlation of neighbours below which noise is white (its error in a few hundred samples)
+inline constexpr double kJitter = 0.05;          // of a step by which a clock may stray (contract: ordinary)
+inline constexpr double kWiden = 2.1;            // curvature understates the spread of nonlinear fits whose law is not quite the true one (development half: 90-93 % covered)
+inline constexpr double kForm = 0.02;            // relative, 1 sd: gain of the sensor and form of the law, which no fit can see
+inline constexpr double kClock = 1e-4;           // relative, 1 sd: rate of a clock, all that a line's frequency owes to the instrument
+inline constexpr double kLineWiden = 1.4;        // of an amplitude's interval: a mean of few records
+inline constexpr double kFarStart = 4.0;         // amplitudes of a start beyond which a score test is far from it, and
+inline constexpr double kFarPromise = 0.7;       // the share of its promise that is believed
+inline constexpr double kHeartSampling = 1.0, kHeartSpan = 3.0;  // [Hz], [s]: less does not show a heart beat of 0.8-2 Hz, even folded
+inline constexpr double kTremorSampling = 17.0;  // [Hz], twice 8 Hz and a margin
+inline constexpr double kHumSampling = 1.5, kHumSamples = 24.0;  // [Hz], and in the longest record: less, and 50 Hz folds onto anything
+inline constexpr double kHumBand = 0.15;         // [Hz] about 50 and 60: what a grid strays in seconds
+inline constexpr double kLinePeriods = 2.0;      // in the longest record: less is not told from what is slow
+inline constexpr int kPairParents = 3, kTripleParents = 1;        // best sets to which one more effect is added
+inline constexpr int kPairEffects = 4, kTripleEffects = 3;        // most promising effects added to each
+inline constexpr int kFirstForms = 4, kFurtherForms = 2;          // forms of an effect that are fitted, alone and beside others
+inline constexpr int kRepetitions = 2000;        // of the baseline: the chance of 0.0025 is then known to 0.001 (discovery.md: 200)
+inline constexpr int kRounds = 6;                // of the full solver's mapping, and
+inline constexpr double kRest = 1e-3;            // of full scale, a change below which it has come to rest: a sixth of what is material
+inline constexpr int kRecords = 50;              // simulated of a next experiment, and
+inline constexpr double kLikely = 0.5;           // the share that must decide for it to be called likely to
+inline constexpr double kResampled = 1.0 / 3.0;  // of resamplings that choose a term of what is unexplained, for it to be told
+}  // namespace assumed
+
+/// One line of the report's table: reference/discovery.md 4.3 beside what is used.
 struct RuleText {
-  std::string text;
+  std::string text, reference;  // reference "-": says nothing of it
   double value;
+  std::string why;              // empty: as there
 };
 std::vector<RuleText> listed(const Rules& rules);
 std::vector<RuleText> listed(const HoldRules& rules, const Rules& common);

@@ -1,4 +1,5 @@
 #include "reconcile/screen.h"
+#include "reconcile/rules.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -43,11 +44,13 @@ Screen::Screen(const Fitter& fitter, const Fit& fit) : fitter_(fitter), fit_(fit
   S_ = ng > 0 ? A.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : A;
 }
 
-Screen::Signature Screen::signature(const Form& form, const std::vector<double>& start) const {
+Screen::Signature Screen::signature(const Form& form, const std::vector<double>& start) const { return signature(std::vector<const Form*>{&form}, {start}); }
+
+Screen::Signature Screen::signature(const std::vector<const Form*>& forms, const std::vector<std::vector<double>>& params) const {
   Signature out;
   Fit with = fit_;
-  with.forms.push_back(&form);
-  with.params.push_back(start);
+  with.forms.insert(with.forms.end(), forms.begin(), forms.end());
+  with.params.insert(with.params.end(), params.begin(), params.end());
   out.g = Eigen::VectorXd::Zero(S_.rows());
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     Eigen::VectorXd s = fitter_.residual(trials_[i], fitter_.setting(with, trials_[i])) - r_[i];
@@ -101,7 +104,7 @@ Score Screen::score(const Form& form, const std::vector<double>& start) const {
   out.amplitude = -along / out.seen;
   const bool either_sign = !form.params.empty() && form.params[0].low < 0.0 && form.params[0].high > 0.0;
   if (out.amplitude > 0.0 || either_sign) out.gain = along * along / out.seen;
-  if (out.amplitude > 4.0) out.gain *= 0.7;  // far from the start: the promise is less sure
+  if (out.amplitude > assumed::kFarStart) out.gain *= assumed::kFarPromise;  // far from the start: the promise is less sure
   return out;
 }
 
@@ -156,10 +159,20 @@ Screen::Direction Screen::direction(const Form& form, const std::vector<double>&
   return out;
 }
 
-double Screen::correlation(const Form& a, const std::vector<double>& pa, const Form& b, const std::vector<double>& pb) const {
-  const Signature x = signature(a, pa), y = signature(b, pb);
-  const double xx = inner(x, x), yy = inner(y, y);
-  return xx > 0 && yy > 0 ? inner(x, y) / std::sqrt(xx * yy) : 0.0;
+Likeness Screen::likeness(const std::vector<const Fit*>& sets) const {
+  std::vector<Signature> all;
+  for (const Fit* f : sets) all.push_back(signature(f->forms, f->params));
+  const auto n = static_cast<Eigen::Index>(sets.size());
+  Likeness out{Eigen::MatrixXd::Zero(n, n), {}};
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index k = 0; k < n; ++k) out.correlation(i, k) = inner(all[static_cast<std::size_t>(i)], all[static_cast<std::size_t>(k)]);
+  const Eigen::VectorXd seen = out.correlation.diagonal().cwiseMax(0.0);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double norm = all[static_cast<std::size_t>(i)].norm;
+    out.masked.push_back(norm > 0.0 ? 1.0 - seen[i] / norm : 1.0);
+    for (Eigen::Index k = 0; k < n; ++k) out.correlation(i, k) = i == k ? 1.0 : seen[i] > 0.0 && seen[k] > 0.0 ? out.correlation(i, k) / std::sqrt(seen[i] * seen[k]) : 0.0;
+  }
+  return out;
 }
 
 namespace {
@@ -199,9 +212,9 @@ Reason clock_condition(const Dataset& d, Effect e) {
     rate = std::min(rate, (t.samples() - 1) / length);
     span = std::max(span, length);
   }
-  if (e == Effect::pulsation && (rate < 1.0 || span < 3.0)) return {"records too short or sampled too slowly for a heart beat", true};
-  if (e == Effect::physiological_tremor && rate < 17.0) return {"sampled more slowly than twice 8 Hz", true};
-  if (e == Effect::mains_hum && (rate < 1.5 || span * rate < 24.0)) return {"too few samples: sampled so slowly that 50 Hz folds onto anything", true};
+  if (e == Effect::pulsation && (rate < assumed::kHeartSampling || span < assumed::kHeartSpan)) return {"records too short or sampled too slowly for a heart beat", true};
+  if (e == Effect::physiological_tremor && rate < assumed::kTremorSampling) return {"sampled more slowly than twice 8 Hz", true};
+  if (e == Effect::mains_hum && (rate < assumed::kHumSampling || span * rate < assumed::kHumSamples)) return {"too few samples: sampled so slowly that 50 Hz folds onto anything", true};
   return {};
 }
 
@@ -222,8 +235,8 @@ std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& fo
   double clearer = 1.0;  // where less noise than 1 % of full scale is stated
   for (const std::string& name : d.outputs) {
     const double fs = model.full_scale(name);
-    noise.output.push_back({0.01 * fs, 0.0, fs, ""});
-    if (const double stated = d.channel(name).noise; stated > 0.0) clearer = std::max(clearer, std::pow(0.01 * fs / stated, 2));
+    noise.output.push_back({assumed::kLintNoise * fs, 0.0, fs, ""});
+    if (const double stated = d.channel(name).noise; stated > 0.0) clearer = std::max(clearer, std::pow(assumed::kLintNoise * fs / stated, 2));
   }
   Fitter fitter(model, noise);
   Fit base;

@@ -8,6 +8,12 @@
 
 namespace filum::reconcile {
 
+/// How alike the signatures of sets of effects are beyond what a refit could answer, and how much of each such a refit hides.
+struct Likeness {
+  Eigen::MatrixXd correlation;  // sets x sets, symmetric, 1 on the diagonal
+  std::vector<double> masked;   // 0 ... 1
+};
+
 struct Score {
   const Form* form = nullptr;
   std::vector<double> start;
@@ -37,8 +43,8 @@ class Screen {
   Direction direction(const Form& form, const std::vector<double>& start) const;
   const std::vector<Eigen::VectorXd>& residuals() const { return r_; }
   const std::vector<int>& trials() const { return trials_; }
-  /// Correlation of the orthogonal parts of two signatures.
-  double correlation(const Form& a, const std::vector<double>& pa, const Form& b, const std::vector<double>& pb) const;
+  /// Of sets of effects, each switched on at its fitted values.
+  Likeness likeness(const std::vector<const Fit*>& sets) const;
 
  private:
   struct Signature {
@@ -48,6 +54,7 @@ class Screen {
     double norm = 0.0;
   };
   Signature signature(const Form& form, const std::vector<double>& start) const;
+  Signature signature(const std::vector<const Form*>& forms, const std::vector<std::vector<double>>& params) const;
   double inner(const Signature& a, const Signature& b) const;
 
   const Fitter& fitter_;

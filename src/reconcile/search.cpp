@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "reconcile/in_step.h"
+#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
@@ -24,9 +25,9 @@ Noise first_noise(const RigModel& model) {
   Noise noise;
   for (const std::string& name : model.data().outputs) {
     const double fs = model.full_scale(name), stated = model.data().channel(name).noise;
-    noise.output.push_back({stated > 0 ? stated : 0.02 * fs, 0.0, fs, stated > 0 ? "stated" : "fast part"});
+    noise.output.push_back({stated > 0 ? stated : assumed::kFirstNoise * fs, 0.0, fs, stated > 0 ? "stated" : "fast part"});
   }
-  noise.scatter = 0.10;
+  noise.scatter = assumed::kFirstScatter;
   return noise;
 }
 
@@ -80,19 +81,19 @@ class Search::Steps {
 Search::Search(const RigModel& model, const std::vector<Form>& forms, const Options& options)
     : model_(model), forms_(forms), options_(options), fitter_(model, first_noise(model)) {}
 
-void Search::fit_baseline() {
+void Search::start_baseline() {
   const auto start = model_.guess();
   Fit loose = fitter_.fit({}, start, {});
   Noise noise = estimate_noise(fitter_, loose);
   fitter_.set_noise(noise);
-  loose = fitter_.fit({}, loose.base, {}, {}, &loose);
+  loose = fit_baseline(fitter_, start, &loose, options_.threads, {options_.rules.start_factor, options_.rules.start_same, options_.rules.start_share}, baseline_);
   noise = estimate_noise(fitter_, loose);
-  noise.scatter = model_.data().rig == Rig::forceps_bridge ? 0.008 : replicate_scatter(model_.data(), loose);
+  noise.scatter = model_.data().rig == Rig::forceps_bridge ? assumed::kScatterLow : replicate_scatter(model_.data(), loose);
   fitter_.set_noise(noise);
   // the geometric factor of a blade is an estimate: where two blades are compared it is free within reason
   std::set<double> blades;
   for (const Trial& t : model_.data().trials) blades.insert(t.size("blade_width") * t.size("blade_length"));
-  if (blades.size() > 1) noise.scatter = std::max(noise.scatter, 0.2);
+  if (blades.size() > 1) noise.scatter = std::max(noise.scatter, assumed::kBladeScatter);
   fitter_.set_noise(noise);
   base_ = fitter_.fit({}, loose.base, {}, {}, &loose);
 }
@@ -118,7 +119,7 @@ bool Search::separate(Fit& from, const Line& line) const {
 
 /// Bands in which an effect's lines are looked for [Hz].
 static std::vector<std::pair<double, double>> bands_of(const Form& f, std::size_t line) {
-  if (f.effect == Effect::mains_hum) return {{49.85, 50.15}, {59.85, 60.15}};
+  if (f.effect == Effect::mains_hum) return {{50.0 - assumed::kHumBand, 50.0 + assumed::kHumBand}, {60.0 - assumed::kHumBand, 60.0 + assumed::kHumBand}};
   return {{f.params[line].low, f.params[line].high}};
 }
 
@@ -128,7 +129,7 @@ Line Search::line_of(const Form& f, std::size_t line, const Fit& from) const {
   double span = 0.0;
   for (const Trial& t : model_.data().trials) span = std::max(span, t.time[t.samples() - 1] - t.time[0]);
   for (const auto& [lowest, high] : bands_of(f, line)) {
-    const double low = std::max(lowest, 2.0 / span);
+    const double low = std::max(lowest, assumed::kLinePeriods / span);
     if (low >= high) continue;
     Fit left = from;
     Line found = strongest_line(fitter_, left, low, high);
@@ -184,12 +185,15 @@ std::vector<Fit> Search::extend(const Fit& from, int most_effects, int most_form
   std::stable_sort(scores.begin(), scores.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
   if (scores.empty()) return {};
   const double top = scores[0].gain;
+  // instruments first: as the cheapest explanation they are fitted whenever they promise anything, and take no place from the others
+  const auto instrument = [&](const Score& s) { return from.forms.empty() && info(s.form->effect).stage == 0 && s.gain >= rules.screen_least; };
+  std::stable_partition(scores.begin(), scores.end(), instrument);
   std::vector<Effect> order;
   std::map<Effect, std::map<int, int>> used;
   std::vector<Score> candidates;
   for (const Score& s : scores) {
     const Effect e = s.form->effect;
-    const bool seen = std::find(order.begin(), order.end(), e) != order.end();
+    const bool seen = std::find(order.begin(), order.end(), e) != order.end() || instrument(s);
     if (!seen) {
       if (static_cast<int>(order.size()) >= most_effects) continue;
       if (order.size() >= 3 && s.gain < rules.screen_share * top) continue;
@@ -271,11 +275,12 @@ void Search::refresh(const Stretch& stretch) {
   noise.scatter = fitter_.noise().scatter;
   if (!top.forms.empty() && model_.data().rig != Rig::forceps_bridge && model_.data().rig != Rig::spatula_press) {
     // an effect that was missing may have looked like scatter, never the other way round
-    noise.scatter = std::min(noise.scatter, std::max(0.008, replicate_scatter(model_.data(), top)));
+    noise.scatter = std::min(noise.scatter, std::max(assumed::kScatterLow, replicate_scatter(model_.data(), top)));
   }
   fitter_.set_noise(noise);
   base_ = fitter_.fit({}, base_.base, {}, {12, 1e-5}, &base_);
-  if (candidates_.size() > 14) candidates_.resize(14);
+  int kept = 0;  // an instrument alone stays in the comparison
+  std::erase_if(candidates_, [&](const Fit& f) { return ++kept > options_.rules.kept_most && (f.forms.size() > 1 || info(f.forms[0]->effect).stage != 0); });
   Steps steps(options_, stretch, candidates_.size());
   parallel(options_.threads, candidates_.size(), [&](std::size_t i) {
     stop_if_cancelled(options_);
@@ -306,9 +311,9 @@ void Search::run() {
     if (options_.progress) options_.progress(stage, share);
   };
   say("baseline", 0.05);
-  fit_baseline();
+  start_baseline();
   say("one effect", 0.15);
-  keep(extend(base_, options_.rules.screen_most, 4, {"one effect", 0.15, 0.3}));
+  keep(extend(base_, options_.rules.screen_most, assumed::kFirstForms, {"one effect", 0.15, 0.3}));
   refresh({"one effect", 0.3, 0.35});
   for (std::size_t size = 1; size < static_cast<std::size_t>(options_.rules.most_effects); ++size) {
     const Fit* top = best(size);
@@ -319,9 +324,9 @@ void Search::run() {
     say(stage, at);
     std::vector<Fit> parents;
     for (const Fit& f : candidates_)
-      if (f.forms.size() == size && parents.size() < (size == 1 ? 3u : 1u)) parents.push_back(f);
+      if (f.forms.size() == size && parents.size() < static_cast<std::size_t>(size == 1 ? assumed::kPairParents : assumed::kTripleParents)) parents.push_back(f);
     const double each = 0.2 / static_cast<double>(parents.size());
-    for (const Fit& p : parents) keep(extend(p, size == 1 ? 4 : 3, 2, {stage, at, at + each})), at += each;
+    for (const Fit& p : parents) keep(extend(p, size == 1 ? assumed::kPairEffects : assumed::kTripleEffects, assumed::kFurtherForms, {stage, at, at + each})), at += each;
     refresh({stage, at, at + 0.05});
     const Fit* next = best(size + 1);
     top = best(size);

@@ -2,6 +2,7 @@
 // Fits of effect sets: singles, then pairs and triples where they earn it, best first. Works on one Fitter; every fit is a full
 // simulation of all records that are not held out.
 
+#include "reconcile/baseline.h"
 #include "reconcile/numerics.h"
 #include "reconcile/result.h"
 #include "reconcile/structure.h"
@@ -20,6 +21,8 @@ class Search {
 
   const Fitter& fitter() const { return fitter_; }
   const Fit& base() const { return base_; }
+  /// Where the baseline was started from and where it ended.
+  const BaselineSummary& baseline() const { return baseline_; }
   const std::vector<Form>& forms() const { return forms_; }
   /// Best fit of each set of effects.
   const std::vector<Fit>& candidates() const { return candidates_; }
@@ -46,7 +49,7 @@ class Search {
     double from, to;
   };
   class Steps;
-  void fit_baseline();
+  void start_baseline();
   std::vector<Fit> extend(const Fit& from, int most_effects, int most_forms, const Stretch& stretch) const;
   std::vector<Score> lines(const Fit& from) const;
   Line line_of(const Form& f, std::size_t line, const Fit& from) const;
@@ -63,6 +66,7 @@ class Search {
   const Options& options_;
   Fitter fitter_;
   Fit base_;
+  BaselineSummary baseline_;
   std::vector<Fit> candidates_;
   double dispersion_ = 1.0;
 };

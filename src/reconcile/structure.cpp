@@ -1,4 +1,5 @@
 #include "reconcile/structure.h"
+#include "reconcile/rules.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,7 +87,7 @@ double line_remainder(const Fitter& fitter, const Fit& fit, std::size_t output) 
     std::vector<Eigen::VectorXd> plain;
     fitter.residual(static_cast<int>(i), fitter.setting(without, static_cast<int>(i)), nullptr, &plain);
     const Trial& t = fitter.model().data().trials[i];
-    const double step = (t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1), phase = 2.0 * std::numbers::pi * frequency * 0.05 * step;
+    const double step = (t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1), phase = 2.0 * std::numbers::pi * frequency * assumed::kJitter * step;
     const double power = (fit.predicted[i][output] - plain[output]).squaredNorm() / static_cast<double>(t.samples());
     sum += power * std::expm1(std::min(phase * phase, 3.0));
     ++records;
@@ -95,8 +96,6 @@ double line_remainder(const Fitter& fitter, const Fit& fit, std::size_t output) 
 }
 
 }  // namespace
-
-constexpr double kWorth = 8.0;  // of twice the log likelihood, for a share of white noise: once in 200 sets where there is none
 
 Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
   Noise noise = fitter.noise();
@@ -119,17 +118,17 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
     if (channel.noise > 0.0) {
       o.from = "stated";
       // jitter of the clock and steps of the converter may add to what is stated, but not anything
-      const double most = 1.15 * std::sqrt(channel.noise * channel.noise + line_remainder(fitter, fit, c));
+      const double most = assumed::kStatedMost * std::sqrt(channel.noise * channel.noise + line_remainder(fitter, fit, c));
       o.sigma = std::max(std::clamp(std::sqrt(0.5 * v1), channel.noise, most), floor);
       o.rho = std::clamp(1.0 - 0.5 * v1 / (o.sigma * o.sigma), 0.0, 0.98);
       o.white = 0.0;
       // what replicates do not share is noise, slow or fast; a residual alone could be a slow misfit as well
-      if (replicates) o = likeliest(records, o, std::max(channel.noise, floor), std::max(most, floor), kWorth);
+      if (replicates) o = likeliest(records, o, std::max(channel.noise, floor), std::max(most, floor), assumed::kWhiteWorth);
       continue;
     }
     o.from = replicates ? "replicates" : "fast part";
     const double r2 = v1 > 0 ? v2 / v1 - 1.0 : 0.0, r4 = v2 > 0 ? std::sqrt(std::max(0.0, v4 / v2 - 1.0)) : 0.0;
-    o.rho = std::clamp(0.5 * (r2 + r4) < 0.08 ? 0.0 : 0.5 * (r2 + r4), 0.0, 0.97);
+    o.rho = std::clamp(0.5 * (r2 + r4) < assumed::kMemoryLeast ? 0.0 : 0.5 * (r2 + r4), 0.0, 0.97);
     o.sigma = std::max(std::sqrt(0.5 * v1 / (1.0 - o.rho)), floor);
     const double rms = n > 0 ? std::sqrt(sum / n) : o.sigma;
     if (o.sigma > rms && rms > floor) {  // the variogram cannot ask for more than is there
@@ -137,7 +136,7 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
       o.rho = std::clamp(1.0 - 0.5 * v1 / (rms * rms), 0.0, 0.97);
     }
     o.white = 0.0;
-    if (replicates) o = likeliest(records, o, floor, std::max(rms, floor), kWorth);
+    if (replicates) o = likeliest(records, o, floor, std::max(rms, floor), assumed::kWhiteWorth);
   }
   return noise;
 }
@@ -156,9 +155,9 @@ double replicate_scatter(const Dataset& d, const Fit& loose) {
     freedom += static_cast<int>(v.size()) - 1;
   }
   // few groups say little: the contract's 5-10 % is the second voice
-  if (freedom == 0) return 0.012;
+  if (freedom == 0) return assumed::kScatterAlone;
   const double s = std::sqrt(sum / freedom);
-  return std::clamp(s * (1.0 + 1.0 / freedom), 0.008, 0.15);
+  return std::clamp(s * (1.0 + 1.0 / freedom), assumed::kScatterLow, assumed::kScatterHigh);
 }
 
 double replicate_dispersion(const Fitter& fitter, const Fit& fit, int length) {

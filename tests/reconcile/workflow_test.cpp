@@ -152,7 +152,22 @@ TEST(Workflow, WritesTheReportOfTheContract) {
   for (const char* effect : {"viscoelastic-relaxation", "strain-stiffening", "sensor-lag", "mains-hum", "rig-compliance"}) EXPECT_TRUE(screened.count(effect)) << effect;
   for (const auto& w : j["where_by"]) axes.insert(w["axis"]);
   EXPECT_EQ(axes, (std::set<std::string>{"trial", "phase", "strain", "rate", "frequency"}));  // one output and one cycle: nothing to compare
-  EXPECT_EQ(j["rules"].size(), 40u);
+  EXPECT_EQ(j["rules"].size(), 84u);  // 46 that may be set, the order of stages, 37 that are taken as given
+  std::set<std::string> said;
+  for (const auto& rule : j["rules"]) {
+    EXPECT_TRUE(said.insert(rule["rule"].get<std::string>() + rule["why"].get<std::string>() + rule["value"].dump()).second) << rule["rule"];
+    EXPECT_FALSE(rule["reference"].get<std::string>().empty()) << rule["rule"];
+    EXPECT_FALSE(rule["reference"] == "-" && rule["why"].get<std::string>().empty()) << rule["rule"];  // what the reference does not say has its own reason
+  }
+  EXPECT_NE(page.find("discovery.md 4.3"), std::string::npos);
+  std::string stages;
+  for (const auto& x : j["stages"]) stages += x["stage"].get<std::string>() + ":" + x["summary"].get<std::string>() + "\n";
+  for (const char* part : {"lint:", "noise:force 1.1 % of full scale, from replicates", "baseline:3 of 3 starts", "detect:p = 0.001", "localise:most of it, 13 %, in c.csv", "screen:", "fit:", "challenge:2 folds, 2 of them count (the fastest rate, each protocol in turn): gap", "decide:effect\n", "next experiment:none"})
+    EXPECT_NE(stages.find(part), std::string::npos) << part << "\n" << stages;
+  EXPECT_EQ(j["gap"]["held_out"]["folds"].size(), 2u);
+  EXPECT_EQ(j["baseline_starts"]["of"], 3);
+  EXPECT_EQ(j["baseline_starts"]["same"], 3);  // a block has one optimum
+  EXPECT_NE(page.find("3 of 3 starts ended at the same optimum"), std::string::npos);
 }
 
 TEST(Workflow, RecordsThatAreHeldOutChooseAndFitNothing) {
