@@ -199,6 +199,9 @@ std::string spectrum_text(const NamedEffect& e) {
   return out;
 }
 
+/// A text of the dataset's in double quotes that YAML and JSON both read.
+std::string quoted(const std::string& text) { return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 }  // namespace
 
 std::string model_yaml(const Dataset& d, const Result& r, const std::string& program) {
@@ -210,7 +213,7 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
     s << indent << e.name << ": " << text << "\n";
   };
   s << "# Baseline with what the measurements showed to be missing. Values with their 95 % intervals.\n"
-    << "format: filum-model/1\ntitle: \"" << d.name << "\"\nrig: " << info(d.rig).name << "\nbaseline_model: " << d.model << "\nbaseline:\n";
+    << "format: filum-model/1\ntitle: " << quoted(d.name) << "\nrig: " << info(d.rig).name << "\nbaseline_model: " << d.model << "\nbaseline:\n";
   for (const Estimate& e : r.baseline) value(e, "  ");
   if (r.baseline.empty()) s << "  {}\n";
   s << "effects:\n";
@@ -236,7 +239,7 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
     std::snprintf(text, sizeof text, "  %s: [\"%.6g%s\", \"%.6g%s\"]\n", c.name.c_str(), low, unit.c_str(), high, unit.c_str());
     s << text;
   }
-  s << "source: { dataset: \"" << d.name << "\", hash: \"" << hash_text(d) << "\", program: \"" << program << "\" }\n";
+  s << "source: { dataset: " << quoted(d.name) << ", hash: \"" << hash_text(d) << "\", program: \"" << program << "\" }\n";
   return s.str();
 }
 
