@@ -99,7 +99,7 @@ Json rules_json(const std::vector<RuleText>& rules) {
 }
 
 Json detection_json(const Detection& d) {
-  return {{"statistic", finite(d.statistic)}, {"score", finite(d.score)}, {"p", d.p}, {"chance", d.chance}, {"repetitions", d.repetitions}, {"excess", finite(d.excess)},
+  return {{"statistic", finite(d.statistic)}, {"score", finite(d.score)}, {"score_is", d.score_is}, {"p", d.p}, {"chance", d.chance}, {"repetitions", d.repetitions}, {"excess", finite(d.excess)},
           {"trial", d.trial}, {"from", finite(d.from)}, {"to", finite(d.to)}};
 }
 
