@@ -85,6 +85,10 @@ void check_sizes(const Dataset& d, const Trial& t, const CsvTable& table) {
     refuse("outer_diameter", 20.0 * t.size("outer_diameter"), "at most 20 times the specimen's outer diameter");
     within("axial_stretch", 0.1, 10.0, "a ratio of lengths from 0.1 to 10", "1 is the unstretched tube; percent?");
   }
+  if (d.rig == Rig::needle_insertion) refuse("depth", 0.5, "a depth of at most 0.5 m"), refuse("speed", 10.0, "at most 10 m/s");
+  if (d.rig == Rig::suture_pull) refuse("speed", 10.0, "at most 10 m/s"), refuse("hold_force", 1e3, "at most 1 kN");
+  if (d.rig == Rig::forceps_bridge) refuse("angle", 60.0, "at most 60 rad, ten turns"), refuse("grip_force", 1e4, "at most 10 kN");
+  if (d.rig == Rig::vessel_inflation) refuse("pressure", 1e8, "at most 100 MPa");
   if (d.rig == Rig::suture_pull) within("wrap_angle", -60.0, 60.0, "at most 60 rad, ten turns", "is the unit deg?");
   if (d.rig == Rig::forceps_bridge) within("temperature", 200.0, 450.0, "200 K to 450 K", "kelvin and degC mixed up?");
   if (d.rig == Rig::suture_cantilever) {
@@ -173,6 +177,8 @@ void check_specimen(const YamlNode& own, const YamlNode& common, Rig rig, const 
 
 void check_samples(Dataset& d, const Trial& t, const CsvTable& table) {
   check_sizes(d, t, table);
+  for (const Channel& c : d.channels)
+    if (c.input && c.name != "time") check_spike(t, table, c);
   for (const std::string& name : d.outputs) check_output(d, t, table, name);
 }
 

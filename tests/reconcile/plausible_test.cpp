@@ -98,6 +98,8 @@ TEST(Plausible, RefusalsNameFileLineAndField) {
            {rig_yaml("vessel-inflation", "outer_diameter: \"1 mm\", wall_thickness: \"0.1 mm\"", tube, "rate: \"800 Pa/s\"", ", specimen: { wall_thickness: \"0.6 mm\" }"), tube_csv, "experiment.yaml:10: trials[0].specimen.wall_thickness: found \"0.6 mm\""},
            {rig_yaml("vessel-inflation", "outer_diameter: \"1 mm\", wall_thickness: \"0.1 mm\", layer_split: { media: \"2 kg\" }", tube, "rate: \"800 Pa/s\""), tube_csv, "experiment.yaml:5: specimen.layer_split: found a map, expected lengths with a unit"},
            {rig_yaml("vessel-inflation", "outer_diameter: \"1 mm\", wall_thickness: \"0.1 mm\", layer_split: { media: 0.7, adventitia: \"30 um\" }", tube, "rate: slow"), tube_csv, ""},
+           {rig_yaml("needle-insertion", needle_sizes, needle, "layers: 1"), "x,F\n0,0\n1,1\n2000,2\n3,3\n", "a.csv:4: column x: found \"2000\" mm, expected a depth of at most 0.5 m (is the unit wrong by 1000?)"},
+           {rig_yaml("needle-insertion", needle_sizes, needle, "layers: 1"), "x,F\n0,0\n.001,1\n.002,2\n.003,3\n.004,0\n.005,1\n.006,2\n.007,3\n.008,0\n.009,1\n.010,2\n.011,3\n.012,4\n400,4\n", "a.csv:15: column x: found \"400\" mm, expected a sample less than a thousand times beyond all others"},
            {rig_yaml("needle-insertion", needle_sizes, needle, "layers: 2.5"), needle_csv, "trials[0].protocol.layers: found \"2.5\", expected a whole number of layers from 1 to 20"},
            {rig_yaml("needle-insertion", needle_sizes, needle, "layers: 3 kg"), needle_csv, "trials[0].protocol.layers: found \"3 kg\", expected the number of layers"},
            {rig_yaml("needle-insertion", needle_sizes, needle, "layers: [dura, arachnoid]"), needle_csv, ""},
