@@ -18,7 +18,11 @@ struct Record {
   const Trial* trial = nullptr;
   std::vector<Eigen::VectorXd> white;
   std::vector<Eigen::MatrixXd> slow;  // orthonormal columns of the polynomial over the samples that are there
+  std::vector<Spectrum> seen;         // over the noise as it was found
+  std::vector<double> left;           // of white noise in the lowest bins, when the polynomial has taken its part
 };
+
+constexpr int kLowest = 6;  // bins of which the polynomial takes a part worth counting
 
 Eigen::MatrixXd slow_columns(const Eigen::VectorXd& time, const Eigen::VectorXd& there) {
   Eigen::MatrixXd B(time.size(), 4);
@@ -30,24 +34,38 @@ Eigen::MatrixXd slow_columns(const Eigen::VectorXd& time, const Eigen::VectorXd&
   return Eigen::HouseholderQR<Eigen::MatrixXd>(B).householderQ() * Eigen::MatrixXd::Identity(time.size(), 4);
 }
 
-std::vector<Record> records_of(const Dataset& d, const Fit& fitted, const Noise& noise) {
-  std::vector<Record> out;
-  for (std::size_t i = 0; i < fitted.residual.size(); ++i) {
-    if (fitted.residual[i].empty()) continue;
-    out.push_back({&d.trials[i], {}, {}});
-    for (std::size_t c = 0; c < fitted.residual[i].size(); ++c) {
-      out.back().white.push_back(fitted.residual[i][c] / noise.output[c].sigma);
-      out.back().slow.push_back(slow_columns(d.trials[i].time, fitted.residual[i][c]));
-    }
+/// Shares of a sine's power at the lowest frequencies that the polynomial leaves.
+std::vector<double> left_by(const Eigen::MatrixXd& slow) {
+  std::vector<double> out;
+  const Eigen::Index n = slow.rows();
+  for (int k = 1; k <= kLowest; ++k) {
+    Eigen::MatrixXd waves(n, 2);
+    for (Eigen::Index i = 0; i < n; ++i) waves.row(i) << std::cos(6.283185307179586 * k * static_cast<double>(i) / static_cast<double>(n)), std::sin(6.283185307179586 * k * static_cast<double>(i) / static_cast<double>(n));
+    out.push_back(1.0 - (slow.transpose() * waves).squaredNorm() / waves.squaredNorm());
   }
   return out;
 }
 
-/// The same records as a still tip would have left them.
+std::vector<Record> records_of(const Dataset& d, const Fit& fitted, const Noise& noise) {
+  std::vector<Record> out;
+  for (std::size_t i = 0; i < fitted.residual.size(); ++i) {
+    if (fitted.residual[i].empty()) continue;
+    out.push_back({&d.trials[i], {}, {}, {}, {}});
+    for (std::size_t c = 0; c < fitted.residual[i].size(); ++c) {
+      out.back().white.push_back(fitted.residual[i][c] / noise.output[c].sigma);
+      out.back().slow.push_back(slow_columns(d.trials[i].time, fitted.residual[i][c]));
+      out.back().seen.push_back(spectrum(out.back().white[c], d.trials[i].time, 1.0));
+    }
+    out.back().left = left_by(out.back().slow[0]);
+  }
+  return out;
+}
+
+/// Residuals as a still tip would have left them: white noise less the polynomial.
 std::vector<Record> repetition(const std::vector<Record>& seen, Rng& rng) {
   std::vector<Record> out;
   for (const Record& s : seen) {
-    out.push_back({s.trial, s.white, {}});
+    out.push_back({s.trial, s.white, {}, {}, {}});
     for (std::size_t c = 0; c < s.white.size(); ++c) {
       Eigen::VectorXd& y = out.back().white[c];
       Eigen::VectorXd whole(y.size());
@@ -57,6 +75,17 @@ std::vector<Record> repetition(const std::vector<Record>& seen, Rng& rng) {
         if (std::isfinite(y[n])) y[n] = whole[n];
     }
   }
+  return out;
+}
+
+/// Their spectra: bins of white noise are independent and exponential (Brillinger 1981), the lowest less what the polynomial takes.
+std::vector<Spectrum> drawn(const std::vector<Record>& seen, Rng& rng) {
+  std::vector<Spectrum> out;
+  for (const Record& s : seen)
+    for (const Spectrum& like : s.seen) {
+      out.push_back(like);
+      for (std::size_t k = 0; k < like.power.size(); ++k) out.back().power[k] = -std::log(1.0 - rng.uniform()) * (k < s.left.size() ? s.left[k] : 1.0);
+    }
   return out;
 }
 
@@ -83,16 +112,23 @@ double best_line(const std::vector<Spectrum>& all, double low, double high) {
   return best;
 }
 
-double best_band(const std::vector<Record>& records, const std::vector<double>& stated) {
-  std::vector<double> level(stated.size());
+/// The white level of one spectrum, from where neither tremor nor heart is.
+double white_level(const Spectrum& s) {
+  std::vector<double> quiet;
+  for (std::size_t k = 0; k < s.power.size(); ++k)
+    if (s.frequency[k] > 1.5 && (s.frequency[k] < 6.0 || s.frequency[k] > 14.0)) quiet.push_back(s.power[k]);
+  return median(quiet.size() < 8 ? s.power : quiet) / std::log(2.0);
+}
+
+/// `all`: record after record, output after output, over the noise as found.
+double best_band(std::vector<Spectrum> all, const std::vector<double>& stated) {
   for (std::size_t c = 0; c < stated.size(); ++c) {  // as the noise itself was found
     std::vector<double> own;
-    for (const Record& r : records) own.push_back(spectrum(r.white[c], r.trial->time, 0.0).sigma);
-    level[c] = stated[c] > 0.0 ? std::max(1.0, median(own)) : median(own);
+    for (std::size_t i = c; i < all.size(); i += stated.size()) own.push_back(std::sqrt(white_level(all[i])));
+    const double level = stated[c] > 0.0 ? std::max(1.0, median(own)) : median(own);
+    for (std::size_t i = c; i < all.size(); i += stated.size())
+      for (double& p : all[i].power) p /= level * level;
   }
-  std::vector<Spectrum> all;
-  for (const Record& r : records)
-    for (std::size_t c = 0; c < stated.size(); ++c) all.push_back(spectrum(r.white[c], r.trial->time, level[c]));
   double best = leftover(all, {}).evidence;
   const double rate = all[0].rate;
   for (const auto& [low, high] : {std::pair{0.15, 0.4}, {0.8, 2.0}}) best = std::max(best, best_line(all, low, high));
@@ -160,7 +196,9 @@ Detection detect_hold(const Dataset& d, const Fit& fitted, const Noise& noise, c
   const std::vector<Record> seen = records_of(d, fitted, noise);
   const Window window = window_of(seen);
   out.statistic = window.value;
-  out.score = best_band(seen, stated);
+  std::vector<Spectrum> own;
+  for (const Record& r : seen) own.insert(own.end(), r.seen.begin(), r.seen.end());
+  out.score = best_band(own, stated);
   out.score_is = "largest rise of twice the log likelihood over an octave, the tremor's band or a line of heart, breath or mains";
   out.repetitions = kRepetitions;
   out.null_scores.resize(kRepetitions);
@@ -168,9 +206,8 @@ Detection detect_hold(const Dataset& d, const Fit& fitted, const Noise& noise, c
   parallel(options.threads, kRepetitions, [&](std::size_t k) {
     if (options.cancelled && options.cancelled()) return;
     Rng rng(20261123 + k);
-    const std::vector<Record> again = repetition(seen, rng);
-    out.null_scores[k] = best_band(again, stated);
-    windows[k] = window_of(again).value;
+    out.null_scores[k] = best_band(drawn(seen, rng), stated);
+    windows[k] = window_of(repetition(seen, rng)).value;
   });
   const auto above = [](const std::vector<double>& all, double v) { return std::count_if(all.begin(), all.end(), [&](double x) { return x >= v; }); };
   const auto scores = above(out.null_scores, out.score);
