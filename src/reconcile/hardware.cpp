@@ -114,6 +114,10 @@ void check_clock_unit(const Dataset& d, const Trial& t, std::vector<HardwareChec
   }
   if (hold > 0.0 && (span < 0.5 * hold || span > 300.0 * hold))
     out.push_back({"unit", t.file + ", hold", text("the record lasts %.3g s, its protocol holds for %s: is the unit of time wrong by 1000?", span, t.word("hold").c_str())});
+  // where nothing states a speed: a pull and a grip are over in seconds, a creeping thread may take a day
+  const bool quick = d.rig == Rig::suture_pull || d.rig == Rig::forceps_bridge, hangs = d.rig == Rig::suture_cantilever && hold <= 0.0;
+  if ((quick && (span < 0.1 || span > 5000.0)) || (hangs && span < 1.0))
+    out.push_back({"unit", t.file + ", time", text("the record lasts %.3g s: is the unit of time wrong by 1000?", span)});
   if (d.rig == Rig::tip_hold && (rate < 4.0 || rate > 4000.0))
     out.push_back({"unit", t.file + ", time", text("%.3g samples a second, expected 4 to 4000: is the unit of time wrong by 1000?", rate)});
   if (d.rig != Rig::needle_insertion || !t.has("speed") || !t.has("depth")) return;

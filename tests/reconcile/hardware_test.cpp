@@ -140,11 +140,16 @@ TEST(Hardware, NoticesAClockThatIsWrongByAThousand) {
     ASSERT_EQ(held.size(), many) << times;
     const auto needle = said(Rig::needle_insertion, times, [](Trial& t) { t.data["depth"] = Eigen::VectorXd::LinSpaced(200, 0.0, 0.01), t.data["speed"] = Eigen::VectorXd::Constant(200, 1e-3); });
     ASSERT_EQ(needle.size(), many) << times;
+    const auto pull = said(Rig::suture_pull, times, [](Trial&) {});
+    ASSERT_EQ(pull.size(), many) << times;
+    const auto thread = said(Rig::suture_cantilever, times, [](Trial&) {});
+    ASSERT_EQ(thread.size(), times < 1.0 ? 1u : 0u) << times;
     const auto hand = said(Rig::tip_hold, times, [](Trial&) {});
     ASSERT_EQ(hand.size(), many) << times;
     if (many == 0) continue;
     EXPECT_NE(held[0].found.find("its protocol holds for 4 s: is the unit of time wrong by 1000?"), std::string::npos) << held[0].found;
     EXPECT_NE(needle[0].found.find("is the unit of time, depth or speed wrong by 1000?"), std::string::npos) << needle[0].found;
+    EXPECT_NE(pull[0].found.find("the record lasts"), std::string::npos) << pull[0].found;
     EXPECT_NE(hand[0].found.find("samples a second, expected 4 to 4000"), std::string::npos) << hand[0].found;
   }
 }
