@@ -20,7 +20,8 @@ std::string unit_meant(double value, const std::string& unit, const KeyInfo& key
   if (unit.size() > 1) roots.push_back(unit.substr(1));
   for (const std::string& root : roots)
     for (const char* prefix : {"", "m", "u", "n", "k", "M"}) {
-      const std::string other = prefix + root;
+      std::string other = prefix;
+      other += root;
       try {
         if (dimension_of(other) != dimension_of(unit)) continue;
         const double times = unit_scale(other) / unit_scale(unit), would = value * times;
@@ -60,8 +61,8 @@ std::string lines_of(const Trial& t, const CsvTable& table) {
 
 std::string number(double v) {
   std::ostringstream s;
-  s << v;
-  return "\"" + s.str() + "\"";
+  s << '"' << v << '"';
+  return s.str();
 }
 
 /// Samples that cannot be: mostly a unit that is wrong by a thousand.
