@@ -94,12 +94,6 @@ double line_remainder(const Fitter& fitter, const Fit& fit, std::size_t output) 
   return records > 0 && std::isfinite(sum) ? sum / records : 0.0;
 }
 
-}  // namespace
-
-constexpr double kWorth = 8.0;  // of twice the log likelihood, for a share of white noise: once in 200 sets where there is none
-
-namespace {
-
 /// Variance [SI2] that following a film adds to an output: its own, and that of filmed inputs by the output's travel over theirs.
 double tracked_variance(const Dataset& d, const std::string& output, double full_scale) {
   double most = 0.0;
@@ -119,6 +113,8 @@ double tracked_variance(const Dataset& d, const std::string& output, double full
 }
 
 }  // namespace
+
+constexpr double kWorth = 8.0;  // of twice the log likelihood, for a share of white noise: once in 200 sets where there is none
 
 Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
   Noise noise = fitter.noise();
