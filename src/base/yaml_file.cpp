@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "base/utf8.h"
 
 namespace filum {
 namespace {
@@ -48,6 +49,7 @@ struct YamlNode::Value {
   std::vector<std::string> keys;  // of a map, one for each child
   std::vector<std::unique_ptr<Value>> children;
   std::vector<bool> used;  // of a map: the key was asked for
+  std::vector<std::string> asked;  // of a map: every key that was asked for, there or not, in that order
   bool opened = false;     // a YamlNode was handed out for it
   int line = 1;
 
@@ -183,8 +185,7 @@ YamlNode YamlNode::parse(std::string_view text, const std::string& file_name) {
   document->file = file_name;
   if (text.size() > kMaxBytes)
     throw InputError(file_name, "file", "more than 4 MiB", "a YAML file of at most 4 MiB");
-  if (text.find('\0') != std::string_view::npos)
-    throw InputError(file_name, "file", "a zero byte", "a YAML file: text only");
+  require_utf8(text, file_name, "a YAML file");
   try {
     std::istringstream stream{std::string(text)};
     YAML::Parser parser(stream);
@@ -224,6 +225,7 @@ void YamlNode::refuse(const std::string& key, const std::string& expected) const
 
 YamlNode::Value* YamlNode::find(const std::string& key) const {
   if (value_->kind != Value::Kind::map) return nullptr;
+  if (std::find(value_->asked.begin(), value_->asked.end(), key) == value_->asked.end()) value_->asked.push_back(key);
   for (std::size_t i = 0; i < value_->children.size(); ++i) {
     if (value_->keys[i] != key) continue;
     value_->used[i] = true;
@@ -387,7 +389,7 @@ std::vector<std::string> YamlNode::keys() const {
 namespace {
 
 template <class Value>
-const Value* first_unused(const Value& value, const std::string& path, std::string& unused_path) {
+const Value* first_unused(const Value& value, const std::string& path, std::string& unused_path, const Value*& map) {
   for (std::size_t i = 0; i < value.children.size(); ++i) {
     const Value& child = *value.children[i];
     const bool is_map = value.kind == Value::Kind::map;
@@ -395,24 +397,37 @@ const Value* first_unused(const Value& value, const std::string& path, std::stri
                                           : path + "[" + std::to_string(i) + "]";
     if (is_map && !value.used[i]) {
       unused_path = child_path;
+      map = &value;
       return &child;
     }
     const bool look_below =
         child.kind == Value::Kind::list || (child.kind == Value::Kind::map && child.opened);
     if (!look_below) continue;
-    if (const Value* found = first_unused(child, child_path, unused_path)) return found;
+    if (const Value* found = first_unused(child, child_path, unused_path, map)) return found;
   }
   return nullptr;
 }
 
 }  // namespace
 
+std::vector<std::string> YamlNode::scalars(const std::string& key) const {
+  std::vector<std::string> result;
+  const auto collect = [&](const auto& self, const Value& value) -> void {
+    if (value.kind == Value::Kind::scalar) result.push_back(value.scalar);
+    for (const auto& child : value.children) self(self, *child);
+  };
+  collect(collect, require(key, "a value"));
+  return result;
+}
+
 void YamlNode::finish() const {
   std::string unused_path;
-  if (const Value* unused = first_unused(*value_, path_, unused_path)) {
-    throw InputError(document_->file + ":" + std::to_string(unused->line), unused_path, unused->described(),
-                     "no such field here");
-  }
+  const Value* map = nullptr;
+  const Value* unused = first_unused(*value_, path_, unused_path, map);
+  if (unused == nullptr) return;
+  std::string known;
+  for (const std::string& key : map->asked) known += (known.empty() ? ", only: " : ", ") + key;
+  throw InputError(document_->file + ":" + std::to_string(unused->line), unused_path, unused->described(), "no such field here" + known);
 }
 
 }  // namespace filum

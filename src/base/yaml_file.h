@@ -54,6 +54,8 @@ class YamlNode {
   Vec3 vec3_or(const std::string& key, std::string_view unit, const Vec3& otherwise) const;
   std::vector<double> quantities(const std::string& key, std::string_view unit, Range range = {}) const;
   std::vector<std::string> texts(const std::string& key) const;
+  /// Every scalar below a key, however deep: for fields whose form is free.
+  std::vector<std::string> scalars(const std::string& key) const;
   /// A map inside this one.
   YamlNode map(const std::string& key) const;
   /// The elements of a list of maps; `items_or_none` gives an empty list when the key is absent.
@@ -62,7 +64,7 @@ class YamlNode {
   /// Keys in the order of the file, for maps whose keys are names.
   std::vector<std::string> keys() const;
 
-  /// Refuses keys that nobody asked for, here and in every map and list item that was opened below.
+  /// Refuses keys that nobody asked for, with those that were, here and in every map and list item that was opened below.
   void finish() const;
 
   /// For checks that only the caller can make: refuse("bite", "less than the wall's thickness").

@@ -8,7 +8,7 @@ namespace filum::reconcile {
 namespace {
 
 /// Far from the optimum the records' own scales would take up what all have in common (a ravine from which steps lead back slowly): as good as one at first.
-constexpr double kAlike = 1e-4;
+constexpr double kHeldScatter = 1e-4;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ Fit fit_baseline(const Fitter& fitter, const std::vector<double>& guess, const F
   std::vector<Fit> fits(starts.size());
   Fitter alike(fitter);
   Noise noise = fitter.noise();
-  noise.scatter = noise.gain_scatter = kAlike;
+  noise.scatter = noise.gain_scatter = kHeldScatter;
   alike.set_noise(std::move(noise));
   parallel(threads, starts.size(), [&](std::size_t i) {
     const Fit first = i == 0 && warm != nullptr ? *warm : alike.fit({}, starts[i], {});

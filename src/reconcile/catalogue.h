@@ -40,6 +40,7 @@ struct KeyInfo {
   std::string unit;                  // "" for a word
   std::vector<std::string> words;    // allowed words; empty: any
   bool required = false;
+  double low = 0.0, high = 0.0;      // [SI], what is possible: a factor of 1000 apart at most (plausible.h); 0: anything
 };
 
 struct RigInfo {

@@ -61,13 +61,6 @@ Group other_size(const Dataset& d) {
   return out;
 }
 
-void add_squares(const Noise& noise, const Fit& f, double& sum, int& n) {
-  for (const auto& trial : f.residual)
-    for (std::size_t c = 0; c < trial.size(); ++c)
-      for (const double r : trial[c])
-        if (std::isfinite(r)) sum += std::pow(r / noise.output[c].sigma, 2), ++n;
-}
-
 /// In words: what is held out on purpose, then the rest.
 std::string turn(const std::vector<Part>& parts) {
   std::string out;
@@ -96,6 +89,13 @@ Fit predicted(const Fitter& all, const Part& part, const Fit& start) {
 }
 
 }  // namespace
+
+void add_squares(const Noise& noise, const Fit& f, double& sum, int& n) {
+  for (const auto& trial : f.residual)
+    for (std::size_t c = 0; c < trial.size(); ++c)
+      for (const double r : trial[c])
+        if (std::isfinite(r)) sum += std::pow(r / noise.output[c].sigma, 2), ++n;
+}
 
 double rate_of(const Dataset& d, const Trial& t) {
   if (!t.clocked) return 0.0;

@@ -19,6 +19,9 @@ std::vector<Part> parts_of(const Dataset& d, const Rules& rules);
 /// How fast a trial's own input goes [unit of the input / s, or of `speed` where that is recorded]: nine tenths of its steps are slower.
 double rate_of(const Dataset& d, const Trial& t);
 
+/// Adds the squares of the residuals in units of the noise, and how many they are.
+void add_squares(const Noise& noise, const Fit& f, double& sum, int& n);
+
 struct Challenge {
   bool done = false;
   double explained = 1.0;  // share of the held-out misfit that goes

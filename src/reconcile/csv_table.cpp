@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/utf8.h"
 
 namespace filum::reconcile {
 namespace {
@@ -112,7 +113,7 @@ std::string hint(const std::vector<std::string>& header, const std::vector<std::
 
 CsvTable CsvTable::parse(const std::string& whole, const std::string& file) {
   if (whole.size() > kMaxBytes) throw InputError(file, "file", "more than 256 MiB", "a CSV file of at most 256 MiB");
-  if (whole.find('\0') != std::string::npos) throw InputError(file, "file", "a zero byte", "CSV: text only");
+  require_utf8(whole, file, "a CSV file");
   const std::string text = whole.rfind("\xEF\xBB\xBF", 0) == 0 ? whole.substr(3) : whole;
   CsvTable table;
   table.file = file;

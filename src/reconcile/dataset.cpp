@@ -10,8 +10,10 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/units.h"
+#include "base/utf8.h"
 #include "base/yaml_file.h"
 #include "reconcile/csv_table.h"
+#include "reconcile/plausible.h"
 #include "reconcile/video_trial.h"
 
 namespace filum::reconcile {
@@ -35,34 +37,21 @@ void check_keys(const YamlNode& node, const std::vector<KeyInfo>& known, Rig rig
   }
 }
 
-/// A value of any dimension, or a plain word.
+/// A value of any dimension, or plain words.
 std::string any_text(const YamlNode& node, const std::string& key) {
-  try {
-    return node.text(key);
-  } catch (const InputError&) {
-    std::string all;
-    for (const std::string& t : node.texts(key)) all += (all.empty() ? "" : ", ") + t;
-    return all;
-  }
+  std::string all;
+  for (const std::string& t : node.scalars(key)) all += (all.empty() ? "" : ", ") + t;
+  return all;
 }
 
-void read_specimen(const YamlNode& node, Rig rig, std::map<std::string, double>& sizes, std::string& shape) {
-  check_keys(node, info(rig).specimen, rig);
-  for (const KeyInfo& key : info(rig).specimen) {
+void read_specimen(const YamlNode& node, Dataset& d, std::map<std::string, double>& sizes, std::string& shape) {
+  check_keys(node, info(d.rig).specimen, d.rig);
+  for (const KeyInfo& key : info(d.rig).specimen) {
     if (!node.has(key.name)) continue;
-    if (!key.words.empty()) {
-      shape = node.choice(key.name, key.words);
-    } else if (key.unit == "*") {
-      try {
-        any_text(node, key.name);
-      } catch (const InputError&) {
-        for (const YamlNode& item : node.items_or_none(key.name)) for (const auto& k : item.keys()) any_text(item, k);
-      }
-    } else if (key.unit == "#") {
-      sizes[key.name] = node.integer(key.name, 4, 32);
-    } else {
-      sizes[key.name] = node.quantity(key.name, key.unit, Range::positive());
-    }
+    if (!key.words.empty()) shape = node.choice(key.name, key.words);
+    else if (key.unit == "*") check_free_text(node, key, d);
+    else if (key.unit == "#") sizes[key.name] = node.integer(key.name, 4, 32);
+    else sizes[key.name] = plausible_size(node, key);
   }
 }
 
@@ -170,16 +159,6 @@ void read_model(const YamlNode& file, Dataset& d, const std::string& root) {
   }
 }
 
-void note(Dataset& d, const std::string& text) {
-  if (std::find(d.notices.begin(), d.notices.end(), text) == d.notices.end()) d.notices.push_back(text);
-}
-
-std::string number(double v) {
-  std::ostringstream s;
-  s << v;
-  return "\"" + s.str() + "\"";
-}
-
 /// The clock must run forward without gaps in itself.
 void check_time(const CsvTable& table, const std::string& column, const Eigen::VectorXd& time) {
   for (Eigen::Index i = 0; i < time.size(); ++i) {
@@ -191,93 +170,6 @@ void check_time(const CsvTable& table, const std::string& column, const Eigen::V
                        "a time later than that of the row before: time is strictly increasing");
     }
   }
-}
-
-/// Sizes that cannot be: mostly a unit that is wrong by a thousand.
-void check_sizes(const Dataset& d, const Trial& t, const CsvTable& table) {
-  const auto refuse = [&](const std::string& channel, double limit, const std::string& what) {
-    if (!t.has(channel)) return;
-    const Eigen::VectorXd& v = t.at(channel);
-    const Channel& c = d.channel(channel);
-    for (Eigen::Index i = 0; i < v.size(); ++i)
-      if (std::isfinite(v[i]) && std::abs(v[i]) > limit)
-        throw InputError(table.file + ":" + std::to_string(table.line[static_cast<std::size_t>(i)]), "column " + c.column,
-                         number(v[i] / c.scale) + " " + c.unit, what + " (is the unit wrong by 1000?)");
-  };
-  if (d.rig == Rig::tissue_block) {
-    const bool compression = t.word("mode") == "compression";
-    refuse("displacement", t.size("height") * (compression ? 1.0 : 20.0), compression ? "less than the specimen's height" : "at most 20 times the specimen's height");
-  }
-  if (d.rig == Rig::spatula_press) refuse("depth", t.size("height"), "less than the tissue's height");
-  if (d.rig == Rig::vessel_inflation) {
-    refuse("outer_diameter", 20.0 * t.size("outer_diameter"), "at most 20 times the specimen's outer diameter");
-    refuse("axial_stretch", 10.0, "a ratio of lengths below 10");
-    if (2.0 * t.size("wall_thickness") >= t.size("outer_diameter"))
-      throw InputError(d.folder + "/experiment.yaml", "specimen.wall_thickness", number(t.size("wall_thickness")) + " m", "less than half the outer diameter");
-  }
-  if (d.rig == Rig::suture_cantilever) {
-    refuse("overhang", 0.5, "an overhang of at most 0.5 m");
-    const double longest = t.has("overhang") ? t.at("overhang").maxCoeff() : t.size("overhang");
-    if (longest > 0.0) refuse("tip_drop", 3.0 * longest, "a drop of at most three times the overhang");
-  }
-}
-
-/// One sample (or two, three) a thousand times beyond all others would be the full scale by which everything is judged: a lost dot, or a sensor that failed.
-void check_spike(const Trial& t, const CsvTable& table, const Channel& c) {
-  const Eigen::VectorXd& v = t.at(c.name);
-  std::vector<std::pair<double, Eigen::Index>> sorted;
-  for (Eigen::Index i = 0; i < v.size(); ++i)
-    if (std::isfinite(v[i])) sorted.emplace_back(v[i], i);
-  if (sorted.size() < 12) return;
-  std::sort(sorted.begin(), sorted.end());
-  const std::size_t n = sorted.size();
-  const double rest = sorted[n - 4].first - sorted[3].first, whole = sorted[n - 1].first - sorted[0].first;
-  if (!(rest > 0.0) || whole < 1000.0 * rest) return;
-  const double middle = sorted[n / 2].first;
-  const Eigen::Index at = std::abs(sorted[0].first - middle) > std::abs(sorted[n - 1].first - middle) ? sorted[0].second : sorted[n - 1].second;
-  throw InputError(table.file + ":" + std::to_string(table.line[static_cast<std::size_t>(at)]), "column " + c.column, number((v[at] - c.shift) / c.scale) + " " + c.unit,
-                   "a sample less than a thousand times beyond all others of its record (leave the cell empty where the sensor failed)");
-}
-
-/// Whether a channel takes more than one value over all trials.
-bool moves(const Dataset& d, const std::string& name) {
-  double first = NAN;
-  for (const Trial& t : d.trials)
-    for (const double x : t.at(name)) {
-      if (!std::isfinite(x)) continue;
-      if (std::isnan(first)) first = x;
-      if (x != first) return true;
-    }
-  return false;
-}
-
-/// Over all trials: an output that never answers, inputs that never move. A still hand has no inputs: an axis that its sensor does not measure is left out.
-void check_constant(Dataset& d) {
-  bool inputs = false, moved = d.rig == Rig::tip_hold;
-  for (const Channel& c : d.channels)
-    if (c.input && c.name != "time") inputs = true, moved = moved || moves(d, c.name);
-  if (inputs && !moved) note(d, "no input changes in any trial: how the outputs answer cannot be learnt from them");
-  for (const Channel& c : d.channels) {
-    if (c.input || !moved || moves(d, c.name)) continue;
-    if (d.rig == Rig::tip_hold && d.outputs.size() > 1) {
-      note(d, "channel " + c.name + " never changes and was left out");
-      std::erase(d.outputs, c.name);
-      continue;
-    }
-    throw InputError((fs::path(d.folder) / d.trials[0].file).string(), "column " + c.column, "the same value in every row of every trial", "an output that answers to its inputs (a dead channel? leave it out of channels)");
-  }
-}
-
-void check_output(Dataset& d, const Trial& t, const CsvTable& table, const std::string& name) {
-  const Eigen::VectorXd& v = t.at(name);
-  double low = INFINITY, high = -INFINITY;
-  int there = 0;
-  for (const double x : v)
-    if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x), ++there;
-  const std::string lines = table.line.empty() ? t.file : table.file + ":" + std::to_string(table.line.front()) + "-" + std::to_string(table.line.back());
-  if (there == 0) throw InputError(lines, "column " + d.channel(name).column, "no sample at all", "at least one number in an output channel");
-  check_spike(t, table, d.channel(name));
-  if (there > 2 && low == high) note(d, t.file + ": channel " + name + " is constant: nothing was measured there or the channel is dead");
 }
 
 /// A channel of a video at the times of the trial; NaN beside lost frames and outside the video.
@@ -327,9 +219,9 @@ CsvTable read_video_samples(Dataset& d, Trial& t, const VideoSetup& setup) {
     if (!sd.empty()) std::nth_element(sd.begin(), sd.begin() + static_cast<std::ptrdiff_t>(sd.size() / 2), sd.end()), t.tracked[c.name] = sd[sd.size() / 2];
     std::ostringstream text;
     text << t.file << ": " << c.name << " followed in the video, 1 sd of a sample " << t.tracked[c.name] << " m";
-    note(d, text.str());
+    d.note(text.str());
   }
-  for (const std::string& n : video.notices) note(d, t.file + ": " + n);
+  for (const std::string& n : video.notices) d.note(t.file + ": " + n);
   return table;
 }
 
@@ -342,7 +234,7 @@ CsvTable read_table_samples(Dataset& d, Trial& t, const std::string& path) {
   }
   const auto used = [&](const std::string& h) { return std::any_of(d.channels.begin(), d.channels.end(), [&](const Channel& c) { return c.column == h; }); };
   for (const std::string& h : table.header)
-    if (!used(h)) note(d, t.file + ": column \"" + h + "\" is not a channel and was ignored");
+    if (!used(h)) d.note(t.file + ": column \"" + h + "\" is not a channel and was ignored");
   if (t.time.size() == 0) {
     t.clocked = false;
     t.time = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(table.rows.size()), 0.0, static_cast<double>(table.rows.size()) - 1.0);
@@ -357,11 +249,10 @@ void read_samples(Dataset& d, Trial& t, const std::optional<VideoSetup>& video) 
     if (c.name == "time") continue;
     bool whole = true;
     for (const double x : t.at(c.name)) t.missing += std::isfinite(x) ? 0 : 1, whole = whole && std::isfinite(x);
-    if (c.input && !whole) note(d, t.file + ": input " + c.name + " has missing samples; those rows are left out");
+    if (c.input && !whole) d.note(t.file + ": input " + c.name + " has missing samples; those rows are left out");
   }
-  check_sizes(d, t, table);
-  for (const std::string& name : d.outputs) check_output(d, t, table, name);
-  if (t.missing > 0) note(d, t.file + ": " + std::to_string(t.missing) + " missing samples, left out");
+  check_samples(d, t, table);
+  if (t.missing > 0) d.note(t.file + ": " + std::to_string(t.missing) + " missing samples, left out");
   const int least = d.rig == Rig::tip_hold ? 64 : 4;  // a still hand is judged by its spectrum
   if (t.samples() < least) throw InputError(path, "rows", std::to_string(t.samples()), "at least " + std::to_string(least) + " samples");
   const auto add = [&](const Eigen::VectorXd& v) { d.hash = hash_bytes(v.data(), sizeof(double) * static_cast<std::size_t>(v.size()), d.hash); };
@@ -379,7 +270,7 @@ void drop_rows_without_input(const Dataset& d, Trial& t) {
     if (whole) keep.push_back(i);
   }
   if (static_cast<Eigen::Index>(keep.size()) == t.time.size()) return;
-  if (keep.size() < 4) throw InputError(t.file, "rows", std::to_string(keep.size()) + " with all inputs", "at least 4");
+  if (keep.size() < 4) throw InputError((fs::path(d.folder) / t.file).string(), "rows", std::to_string(keep.size()) + " with all inputs", "at least 4");
   t.time = Eigen::VectorXd(t.time(keep));
   for (auto& [name, v] : t.data) v = Eigen::VectorXd(v(keep));
 }
@@ -391,13 +282,15 @@ void read_trial(const YamlNode& file, const YamlNode& node, Dataset& d, const Tr
   if (path.is_absolute() || std::find(path.begin(), path.end(), "..") != path.end()) node.refuse("file", "a file inside the dataset's folder");
   const bool video = is_video(path);
   if (path.extension() != ".csv" && !video) node.refuse("file", "a .csv file or a video (.mp4, .avi, .mkv, .mov)");
-  if (video && !node.has("video")) node.refuse("video", "a map with scale (length of a pixel) and points (name, x, y in the first frame) for a video");
+  if (!node.has("video") && video) node.refuse("video", "a map with scale (length of a pixel) and points (name, x, y in the first frame) for a video");
   for (const Trial& other : d.trials)
     if (other.file == t.file) node.refuse("file", "each file once");
+  if (!fs::exists(fs::path(d.folder) / path)) node.refuse("file", "a file in the dataset's folder (no such file: " + (fs::path(d.folder) / path).string() + ")");
   t.repeat = node.text_or("repeat", "");
   t.hold_out = node.flag_or("hold_out", false);
-  if (node.has("specimen")) read_specimen(node.map("specimen"), d.rig, t.specimen, t.shape);
+  if (node.has("specimen")) read_specimen(node.map("specimen"), d, t.specimen, t.shape);
   require_specimen(file, d.rig, t);
+  check_specimen(node.has("specimen") ? node.map("specimen") : file.map("specimen"), file.map("specimen"), d.rig, t);
   const bool needs_mode = d.rig == Rig::tissue_block;
   if (node.has("protocol")) {
     const YamlNode protocol = node.map("protocol");
@@ -407,9 +300,10 @@ void read_trial(const YamlNode& file, const YamlNode& node, Dataset& d, const Tr
         if (key.required) protocol.refuse(key.name, "one of compression, tension, shear");
         continue;
       }
+      if (key.unit == "*") check_free_text(protocol, key, d);
       t.protocol[key.name] = key.words.empty() ? any_text(protocol, key.name) : protocol.choice(key.name, key.words);
       if (key.unit == "m" || key.unit == "s") protocol.quantity(key.name, key.unit, Range::not_negative());
-      if (key.name == "overhang") t.specimen["overhang"] = protocol.quantity(key.name, "m", Range::positive());
+      if (key.name == "overhang") t.specimen["overhang"] = plausible_size(protocol, key);
     }
   } else if (needs_mode) {
     node.refuse("protocol", "a map with at least mode: compression, tension or shear");
@@ -423,19 +317,19 @@ void read_trial(const YamlNode& file, const YamlNode& node, Dataset& d, const Tr
 
 void read_trials(const YamlNode& file, Dataset& d) {
   Trial common;
-  if (file.has("specimen")) read_specimen(file.map("specimen"), d.rig, common.specimen, common.shape);
+  if (file.has("specimen")) read_specimen(file.map("specimen"), d, common.specimen, common.shape);
   else file.refuse("specimen", "the sizes of the specimen");
   for (const YamlNode& node : file.items("trials")) read_trial(file, node, d, common);
   if (d.trials.empty()) file.refuse("trials", "at least one trial");
   const auto held = std::count_if(d.trials.begin(), d.trials.end(), [](const Trial& t) { return t.hold_out; });
   if (held == static_cast<std::ptrdiff_t>(d.trials.size())) file.refuse("trials", "at least one trial that is not held out");
   check_constant(d);
-  if (d.trials.size() == 1) note(d, "one trial only: nothing can be held out, and evidence comes from a single record");
+  if (d.trials.size() == 1) d.note("one trial only: nothing can be held out, and evidence comes from a single record");
   std::map<std::string, int> letters;
   for (const Trial& t : d.trials)
     if (!t.repeat.empty()) ++letters[t.repeat];
   if (std::none_of(letters.begin(), letters.end(), [](const auto& l) { return l.second > 1; }))
-    note(d, "no replicates: the noise is as stated, or taken from the fast part of the signals");
+    d.note("no replicates: the noise is as stated, or taken from the fast part of the signals");
 }
 
 }  // namespace
@@ -448,6 +342,10 @@ double Trial::size(const std::string& key, double otherwise) const {
 std::string Trial::word(const std::string& key) const {
   const auto found = protocol.find(key);
   return found == protocol.end() ? "" : found->second;
+}
+
+void Dataset::note(const std::string& text) {
+  if (std::find(notices.begin(), notices.end(), text) == notices.end()) notices.push_back(text);
 }
 
 const Channel& Dataset::channel(const std::string& name) const {
@@ -466,7 +364,7 @@ Dataset load_dataset(const std::string& folder, const std::string& root) {
   d.folder = folder;
   fs::path path = fs::path(folder).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
-  d.name = fs::absolute(path).filename().string();
+  d.name = with_utf8_only(fs::absolute(path).filename().string());
   if (!fs::is_directory(folder)) throw InputError(folder, "dataset", "no such folder", "a folder with experiment.yaml");
   const YamlNode file = YamlNode::load(folder + "/experiment.yaml");
   std::ostringstream text;

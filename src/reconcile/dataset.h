@@ -57,6 +57,8 @@ struct Dataset {
   std::vector<std::string> notices;
   std::uint64_t hash = 0;
 
+  /// Adds a notice, once.
+  void note(const std::string& text);
   const Channel& channel(const std::string& name) const;
   /// Protocol and specimen of a trial as one text: trials with equal text are the same protocol.
   std::string protocol_text(const Trial& trial) const;

@@ -15,12 +15,6 @@
 namespace filum::reconcile {
 namespace {
 
-void add_squares(const Noise& noise, const Fit& f, double& sum, int& n) {
-  for (const auto& trial : f.residual)
-    for (std::size_t c = 0; c < trial.size(); ++c)
-      for (const double r : trial[c])
-        if (std::isfinite(r)) sum += std::pow(r / noise.output[c].sigma, 2), ++n;
-}
 std::string names(const std::vector<Effect>& effects) {
   std::string out;
   for (const Effect e : effects) out += (out.empty() ? "" : " + ") + info(e).name;

@@ -102,6 +102,33 @@ void check_rate(const Dataset& d, const Trial& t, std::vector<HardwareCheck>& ou
     out.push_back({"unit", t.file + ", rate", text("%s moves at %.3g %s at most, its protocol says %s: is the unit of time, or of the input, wrong by 1000?", input, fastest, unit, t.word("rate").c_str())});
 }
 
+/// Where a protocol says how long it holds, or the samples say how fast they move, the clock can be held against it; a still hand's clock against
+/// what a hand can be seen by.
+void check_clock_unit(const Dataset& d, const Trial& t, std::vector<HardwareCheck>& out) {
+  if (!t.clocked || t.samples() < 3) return;
+  const double span = t.time[t.samples() - 1] - t.time[0], rate = (t.samples() - 1) / span;
+  double hold = 0.0;
+  try {
+    if (!t.word("hold").empty()) hold = parse_quantity(t.word("hold"), "s");
+  } catch (const InputError&) {  // no time: refused where it was read
+  }
+  if (hold > 0.0 && (span < 0.5 * hold || span > 300.0 * hold))
+    out.push_back({"unit", t.file + ", hold", text("the record lasts %.3g s, its protocol holds for %s: is the unit of time wrong by 1000?", span, t.word("hold").c_str())});
+  // where nothing states a speed: a pull and a grip are over in seconds, a creeping thread may take a day
+  const bool quick = d.rig == Rig::suture_pull || d.rig == Rig::forceps_bridge, hangs = d.rig == Rig::suture_cantilever && hold <= 0.0;
+  if ((quick && (span < 0.1 || span > 5000.0)) || (hangs && span < 1.0))
+    out.push_back({"unit", t.file + ", time", text("the record lasts %.3g s: is the unit of time wrong by 1000?", span)});
+  if (d.rig == Rig::tip_hold && (rate < 4.0 || rate > 4000.0))
+    out.push_back({"unit", t.file + ", time", text("%.3g samples a second, expected 4 to 4000: is the unit of time wrong by 1000?", rate)});
+  if (d.rig != Rig::needle_insertion || !t.has("speed") || !t.has("depth")) return;
+  const Eigen::VectorXd &u = t.at("depth"), &v = t.at("speed");
+  double moved = 0.0, stated = 0.0;
+  for (Eigen::Index n = 0; n + 1 < u.size(); ++n)
+    if (std::isfinite(u[n]) && std::isfinite(u[n + 1]) && std::isfinite(v[n])) moved += std::abs(u[n + 1] - u[n]), stated += std::abs(v[n]) * (t.time[n + 1] - t.time[n]);
+  if (stated > 0.0 && moved > 0.0 && (moved > 50.0 * stated || stated > 50.0 * moved))
+    out.push_back({"unit", t.file + ", depth", text("the needle travels %.3g m where its speed makes it %.3g m: is the unit of time, depth or speed wrong by 1000?", moved, stated)});
+}
+
 }  // namespace
 
 std::vector<HardwareCheck> check_units(const Dataset& d, const std::vector<Estimate>& baseline) {
@@ -129,6 +156,7 @@ std::vector<HardwareCheck> check_units(const Dataset& d, const std::vector<Estim
   const auto spread = [](const std::vector<double>& v) { return *std::max_element(v.begin(), v.end()) - *std::min_element(v.begin(), v.end()); };
   for (const Trial& t : d.trials) {
     check_rate(d, t, out);
+    check_clock_unit(d, t, out);
     if (d.rig == Rig::vessel_inflation) look(t, "outer_diameter", 0.2 * t.size("outer_diameter"), 5.0 * t.size("outer_diameter"), "usually", typical);
     if (d.rig == Rig::suture_pull || d.rig == Rig::needle_insertion) look(t, "speed", 2e-6, 1.0, "at most", largest);
     if (d.rig == Rig::forceps_bridge) look(t, "angle", 0.02, 3.2, "at most", largest);

@@ -10,146 +10,13 @@
 #include <optional>
 
 #include "base/rng.h"
-#include "reconcile/hold_spectrum.h"
+#include "reconcile/hold_bands.h"
+#include "reconcile/hold_check.h"
 #include "reconcile/search.h"
 
 namespace filum::reconcile {
 namespace {
 
-constexpr HoldRules kRules;
-
-/// The band between 7.5 and 12.5 Hz that stands out most.
-Band tremor_band(const std::vector<Spectrum>& all) {
-  Band best;
-  const double around = std::max(0.5, 0.5 * (level(all, 3.5, 6.5) + level(all, 13.5, 18.0)));
-  for (const double half : {0.2, 0.4, 0.8, 1.4, 2.0})
-    for (double f = 7.8; f <= 12.2; f += 0.1) {
-      const Band b = band(all, f - half, f + half, around);
-      if (b.evidence > best.evidence) best = b;
-    }
-  return best;
-}
-
-struct Found {
-  Effect effect;
-  const Form* form = nullptr;
-  double low, high, frequency, power, evidence;  // power: squared rms [m2] of one record and output
-  int bins;
-};
-
-void add_line(const Fitter& fitter, const Fit& base, const Form& form, double low, double high, const std::vector<Spectrum>& all, std::vector<Found>& found) {
-  const Line line = strongest_line(fitter, base, low, high);
-  if (line.gain < line.columns + kRules.line_spread * std::sqrt(2.0 * line.columns) + kRules.line_gain) return;
-  // at the edge of its band it is the skirt of what lies beyond
-  if (form.effect == Effect::pulsation && std::min(line.frequency - low, high - line.frequency) < all[0].step) return;
-  const double w = 2.5 * all[0].step;
-  const double rate = all[0].rate;
-  double at = std::fmod(line.frequency, rate);  // where it appears when folded
-  if (at > 0.5 * rate) at = rate - at;
-  const double around = level(all, std::max(0.05, at - 12 * w), at + 12 * w);
-  const Band narrow = band(all, at - w, at + w, around), wide = band(all, std::max(0.0, at - 10 * w), at + 10 * w, around);
-  if (narrow.excess < kRules.line_share * wide.excess) return;  // a band, not a line
-  found.push_back({form.effect, &form, at - w, at + w, line.frequency, squared_rms(all, at - w, at + w, around), line.gain, narrow.bins});
-}
-
-/// What least squares leaves of a record when sine and cosine of these frequencies are free.
-double left_without(const Eigen::VectorXd& time, const std::vector<double>& frequencies, Eigen::VectorXd& r) {
-  const auto m = 2 * static_cast<Eigen::Index>(frequencies.size());
-  Eigen::MatrixXd B(r.size(), m);
-  Eigen::VectorXd y = r;
-  for (Eigen::Index n = 0; n < r.size(); ++n) {
-    const bool there = std::isfinite(r[n]);
-    if (!there) y[n] = 0.0;
-    for (Eigen::Index k = 0; k < m; k += 2) {
-      const double phase = 6.283185307179586 * frequencies[static_cast<std::size_t>(k / 2)] * (time[n] - time[0]);
-      B(n, k) = there ? std::cos(phase) : 0.0;
-      B(n, k + 1) = there ? std::sin(phase) : 0.0;
-    }
-  }
-  const Eigen::MatrixXd A = B.transpose() * B;
-  r -= B * (A + 1e-9 * A.trace() * Eigen::MatrixXd::Identity(m, m)).ldlt().solve(B.transpose() * y);
-  double sum = 0.0;
-  for (const double v : r)
-    if (std::isfinite(v)) sum += v * v;
-  return sum;
-}
-
-/// The records without the lines that were found, so that what leaks from a strong line is not taken for something left over. A beat is no
-/// pure sine: its second and third harmonic belong to it.
-Fit without_lines(const Dataset& d, const Fit& base, const std::vector<Found>& found) {
-  Fit out = base;
-  for (std::size_t i = 0; i < out.residual.size(); ++i)
-    for (Eigen::VectorXd& r : out.residual[i])
-      for (const Found& f : found) {
-        if (f.form == nullptr) continue;
-        const double span = d.trials[i].time[d.trials[i].samples() - 1] - d.trials[i].time[0];
-        Eigen::VectorXd best = r;
-        double least = 1e300;
-        for (int k = -4; k <= 4; ++k) {  // the line was found on a grid of 0.3/span
-          const double at = f.frequency + 0.05 * k / span;
-          Eigen::VectorXd trial = r;
-          const double sum = left_without(d.trials[i].time, f.effect == Effect::pulsation ? std::vector<double>{at, 2 * at, 3 * at} : std::vector<double>{at}, trial);
-          if (sum < least) least = sum, best = trial;
-        }
-        r = best;
-      }
-  return out;
-}
-
-/// Hum at 50 or 60 Hz. Sampled at nearly that rate it is folded to where heart and breath are: then it must stand in what they leave, or it is the skirt of theirs.
-void add_hum(const Fitter& fitter, const Fit& base, const Form& form, const std::vector<Spectrum>& all, std::vector<Found>& found) {
-  std::vector<Found> both;
-  const auto look = [&](const Fit& in) {
-    both.clear();
-    for (const double f : {50.0, 60.0}) add_line(fitter, in, form, f - 0.2, f + 0.2, all, both);
-    std::stable_sort(both.begin(), both.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
-  };
-  look(base);
-  std::vector<Found> stronger;
-  for (const Found& f : found)
-    if (!both.empty() && f.evidence > both[0].evidence && std::abs(std::abs(std::remainder(both[0].frequency, all[0].rate)) - f.frequency) < 8.0 * all[0].step) stronger.push_back(f);
-  if (!stronger.empty()) look(without_lines(fitter.model().data(), base, stronger));
-  if (!both.empty()) found.push_back(both[0]);
-}
-
-/// Power beside what was named, in octaves: what nobody explains.
-Band leftover(const std::vector<Spectrum>& all, const std::vector<Found>& found) {
-  Band worst;
-  std::vector<Spectrum> rest = all;
-  for (Spectrum& s : rest)
-    for (const Found& f : found)
-      for (std::size_t k = s.power.size(); k-- > 0;)
-        if (s.frequency[k] >= f.low - 2 * s.step && s.frequency[k] <= f.high + 2 * s.step)
-          s.power.erase(s.power.begin() + static_cast<std::ptrdiff_t>(k)), s.frequency.erase(s.frequency.begin() + static_cast<std::ptrdiff_t>(k));
-  const double top = all[0].frequency.back();
-  for (double f = std::max(0.12, 4.0 * all[0].step); f < top; f *= 1.6) {
-    const Band b = band(rest, f, std::min(top, 1.6 * f), 1.0);
-    if (b.evidence > worst.evidence) worst = b;
-  }
-  return worst;
-}
-
-std::vector<Spectrum> spectra(const RigModel& model, const Fit& base, const std::vector<double>& sigma, bool held) {
-  std::vector<Spectrum> all;
-  const Dataset& d = model.data();
-  for (std::size_t i = 0; i < base.residual.size(); ++i)
-    if (!base.residual[i].empty() && d.trials[i].hold_out == held)
-      for (std::size_t c = 0; c < base.residual[i].size(); ++c) all.push_back(spectrum(base.residual[i][c], d.trials[i].time, sigma[c]));
-  return all;
-}
-
-Gap gap_in(const std::vector<Spectrum>& all, const std::vector<Found>& found) {
-  double before = 0.0, after = 0.0;
-  for (const Spectrum& s : all)
-    for (std::size_t k = 0; k < s.power.size(); ++k) {
-      const bool named = std::any_of(found.begin(), found.end(), [&](const Found& f) { return s.frequency[k] >= f.low && s.frequency[k] <= f.high; });
-      before += s.power[k];
-      after += named ? std::min(1.0, s.power[k]) : s.power[k];
-    }
-  double n = 0;
-  for (const Spectrum& s : all) n += static_cast<double>(s.power.size());
-  return n > 0 ? Gap{std::sqrt(before / n), std::sqrt(after / n)} : Gap{};
-}
 
 /// What a sine of this frequency takes off chi-squared beside the slow polynomial, and its amplitude: mean over records and outputs with weight; folded
 /// to nearly nothing, or near half the sampling rate, it is hardly seen, and the weight says so.
@@ -256,7 +123,7 @@ std::optional<Estimate> clipped_at(const Eigen::VectorXd& y) {
     if (std::isfinite(v)) ++counts[v];
   if (counts.size() < 12) return std::nullopt;
   const auto edge = [&](const auto& first, const auto& second) {
-    return first.second >= kRules.clipped_least && first.second > kRules.clipped_share * static_cast<double>(y.size()) && first.second > kRules.clipped_times * std::max(1, second.second);
+    return first.second >= kHoldRules.clipped_least && first.second > kHoldRules.clipped_share * static_cast<double>(y.size()) && first.second > kHoldRules.clipped_times * std::max(1, second.second);
   };
   const auto limit = [](const auto& first, const auto& second) {
     const double half = 0.5 * std::abs(first.first - second.first);
@@ -327,7 +194,8 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   r.forms = model.all_forms();
   r.not_testable = hold_lint(d);
   Noise noise;
-  std::vector<double> stated;
+  std::vector<double> stated, given;
+  std::vector<Screened> looked;
   for (const std::string& name : d.outputs) {
     stated.push_back(d.channel(name).noise);
     noise.output.push_back({stated.back() > 0 ? stated.back() : 0.02 * model.full_scale(name), 0.0, model.full_scale(name), stated.back() > 0 ? "stated" : "fast part"});
@@ -340,10 +208,11 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     for (std::size_t i = 0; i < d.trials.size(); ++i)
       if (!d.trials[i].hold_out) levels.push_back(spectrum(base.residual[i][c], d.trials[i].time, 0.0).sigma);
     if (stated[c] <= 0 || median(levels) > stated[c]) noise.output[c].sigma = median(levels);
+    given.push_back(std::max(0.0, stated[c]));
     stated[c] = noise.output[c].sigma;
   }
   fitter.set_noise(noise);
-  const auto all = spectra(model, base, stated, false), held = spectra(model, base, stated, true);
+  const auto all = spectra(d, base, stated, false), held = spectra(d, base, stated, true);
   Fit fitted = base;
   for (std::size_t i = 0; i < d.trials.size(); ++i)
     if (d.trials[i].hold_out) fitted.residual[i].clear();
@@ -352,18 +221,24 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   const bool fast = all[0].frequency.back() > 12.0;
   const Band t = tremor_band(all);
   for (const Form& f : r.forms)
-    if (f.line && f.effect != Effect::mains_hum) add_line(fitter, fitted, f, f.params[0].low, f.params[0].high, all, found);
+    if (f.line && f.effect != Effect::mains_hum) add_line(fitter, fitted, f, f.params[0].low, f.params[0].high, all, found, &looked);
   for (const Form& f : r.forms)
-    if (f.effect == Effect::mains_hum) add_hum(fitter, fitted, f, all, found);
+    if (f.effect == Effect::mains_hum) add_hum(fitter, fitted, f, all, found, &looked);
   // heart and breath are one effect: the stronger gives the numbers
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
   const bool alias = std::any_of(found.begin(), found.end(), [&](const Found& f) { return f.effect == Effect::mains_hum && f.low < t.high && f.high > t.low; });
-  if (fast && !alias && t.evidence > kRules.tremor_gain && t.mean > kRules.tremor_power * t.background && t.top_share < kRules.tremor_top && t.centre > kRules.tremor_low && t.centre < kRules.tremor_high)
-    found.push_back({Effect::physiological_tremor, nullptr, t.low - 0.6, t.high + 0.6, closing_frequency(all, t), tremor_power(spectra(model, without_lines(d, fitted, found), stated, false), t), t.evidence, t.bins});
+  const auto say_tremor = [&](const char* what) { looked.push_back({Effect::physiological_tremor, "narrow band of random phase", t.evidence, NAN, what}); };
+  if (fast && !alias && t.evidence > kHoldRules.tremor_gain && t.mean > kHoldRules.tremor_power * t.background && t.top_share < kHoldRules.tremor_top && t.centre > kHoldRules.tremor_low && t.centre < kHoldRules.tremor_high) {
+    found.push_back({Effect::physiological_tremor, nullptr, t.low - 0.6, t.high + 0.6, closing_frequency(all, t), tremor_power(spectra(d, without_lines(d, fitted, found), stated, false), t), t.evidence, t.bins});
+    say_tremor("fitted");
+  } else if (fast) {
+    say_tremor(alias ? "not fitted: the hum is folded to where its band would be" : "not fitted: no band of random phase between 8 and 12 Hz stands out enough");
+  }
   for (const std::string& output : d.outputs)
     for (const Trial& trial : d.trials)
       if (const auto limit = trial.hold_out || !r.effects.empty() ? std::nullopt : clipped_at(trial.at(output))) r.effects.push_back({Effect::saturation, "clipped", {*limit}});
-  say("amplitudes", 0.5);
+  looked.push_back({Effect::saturation, "clipped", NAN, NAN, r.effects.empty() ? "not fitted: no top or bottom is shared by many samples" : "fitted"});
+  say("amplitudes", 0.4);
   for (Found& f : found) {
     Tried tried{{f.effect}, "", -f.evidence, 1.0, true, "taken"};
     if (std::none_of(r.effects.begin(), r.effects.end(), [&](const NamedEffect& e) { return e.effect == f.effect; })) {
@@ -377,13 +252,19 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
   }
   if (t.evidence > 4.0 && std::none_of(found.begin(), found.end(), [](const Found& f) { return f.effect == Effect::physiological_tremor; }))
     r.tried.push_back({{Effect::physiological_tremor}, "", -t.evidence, 0.0, false, "no band of random phase between 8 and 12 Hz stands out enough"});
-  say("what is left", 0.8);
-  const Band left = leftover(spectra(model, without_lines(d, base, found), stated, false), found);
+  say("what is left", 0.6);
+  const Band left = leftover(spectra(d, without_lines(d, base, found), stated, false), found);
   const double detrended = std::sqrt(squared_rms(all, left.low, left.high, 1.0));
-  const bool unexplained = left.evidence > kRules.left_gain && left.mean > kRules.left_power && detrended > r.rules.materiality * model.full_scale(d.outputs[0]);
+  const bool unexplained = left.evidence > kHoldRules.left_gain && left.mean > kHoldRules.left_power && detrended > r.rules.materiality * model.full_scale(d.outputs[0]);
   r.fit = gap_in(all, found);
-  r.held_out = held.empty() ? r.fit : gap_in(held, found);
-  r.held_out_how = held.empty() ? "no trial is held out: the same bands on the fitted ones" : "trials marked hold_out";
+  const auto halves = held.empty() ? gap_of_halves(d, noise, found) : std::nullopt;
+  r.held_out = !held.empty() ? gap_in(held, found) : halves ? *halves : r.fit;
+  r.held_out_how = !held.empty() ? "trials marked hold_out" : halves ? "no trial is held out: the places of what is named are taken from one half of every record and judged in the other, both ways (the names are from the whole)"
+                                                                    : "no trial is held out, and half a record is too short: the same bands on the fitted ones";
+  say("repetitions", 0.7);
+  r.detection = detect_hold(d, fitted, noise, given, options);
+  stop_if_cancelled(options);
+  r.screened = screened_hold(r, looked);
   r.noise = noise;
   r.before = base;
   r.after = without_lines(d, base, found);  // a band of random phase has no curve: it stays in what is left
@@ -394,7 +275,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     for (const Found& f : found) named_power += f.power;
     return named_power / std::max(1e-300, named_power + (unexplained ? detrended * detrended : 0.0));
   }();
-  if (!r.effects.empty() && (share > kRules.named_share || found.empty())) {
+  if (!r.effects.empty() && (share > kHoldRules.named_share || found.empty())) {
     r.verdict = "effect";
     std::string list;
     for (const NamedEffect& e : r.effects) list += (list.empty() ? "" : " + ") + info(e.effect).name;
@@ -405,12 +286,12 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     r.verdict = "unknown";
     char text[300];
     std::snprintf(text, sizeof text, "Between %.2g and %.2g Hz there is %.1f times the noise's power that no effect of the catalogue explains. A line or a band of the catalogue with %.0f %% of all power named would change this.",
-                  left.low, left.high, left.mean, 100 * kRules.named_share);
+                  left.low, left.high, left.mean, 100 * kHoldRules.named_share);
     r.sentence = text;
   } else {
     r.verdict = "agree";
     char text[240];
-    std::snprintf(text, sizeof text, "A still tip, a slow drift and white noise explain the records. A band or a line with %.1f times the noise's power over an octave, in these or in longer records, would change this.", kRules.left_power);
+    std::snprintf(text, sizeof text, "A still tip, a slow drift and white noise explain the records. A band or a line with %.1f times the noise's power over an octave, in these or in longer records, would change this.", kHoldRules.left_power);
     r.sentence = text;
   }
   if (r.verdict == "effect")
@@ -419,7 +300,7 @@ Result reconcile_hold(const Dataset& d, const RigModel& model, const Options& op
     add_cells(d, all, left.low, left.high, 1.0, r.where);
     char text[60];
     std::snprintf(text, sizeof text, "%.3g Hz <= f <= %.3g Hz", left.low, left.high);
-    r.shape.push_back({text, left.mean, stability(spectra(model, without_lines(d, base, found), stated, false), found, left, d.outputs.size())});
+    r.shape.push_back({text, left.mean, stability(spectra(d, without_lines(d, base, found), stated, false), found, left, d.outputs.size())});
   }
   share_out(r.where);
   if (r.verdict != "agree") r.where_by = localise_by(model, fitted, noise);

@@ -200,7 +200,7 @@ void checks(const Dataset& d, const Result& r, std::ostringstream& s) {
   if (r.detection) {
     const Detection& x = *r.detection;
     s << "<h2>Is anything missing?</h2><p>The largest sum of the baseline's residual over any window is " << number(x.statistic, 3) << " standard deviations (" << escaped(x.trial) << ", " << number(x.from) << " s to " << number(x.to)
-      << " s), the best score test of the catalogue " << number(x.score, 4) << ". The rarer of the two among " << x.repetitions << " simulated repetitions in which the baseline is true: p = " << number(x.p, 2)
+      << " s), the " << escaped(x.score_is) << " " << number(x.score, 4) << ". The rarer of the two among " << x.repetitions << " simulated repetitions in which the baseline is true: p = " << number(x.p, 2)
       << "; some effect or line does as well as the best single one here in " << number(100 * x.chance, 2) << " % of them. "
       << (r.dispersion > 1.5 ? "In these figures what no candidate takes away counts as noise (overdispersion " + number(r.dispersion, 3) + "), so that no name rests on it; against the noise as measured, sums over blocks of the residual stand " +
                                    number(r.structure_before, 3) + " standard deviations out. "

@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "reconcile/hardware.h"
-#include "reconcile/hereditary.h"
 #include "reconcile/report.h"
 #include "reconcile/whole_file.h"
 
@@ -99,7 +98,7 @@ Json rules_json(const std::vector<RuleText>& rules) {
 }
 
 Json detection_json(const Detection& d) {
-  return {{"statistic", finite(d.statistic)}, {"score", finite(d.score)}, {"p", d.p}, {"chance", d.chance}, {"repetitions", d.repetitions}, {"excess", finite(d.excess)},
+  return {{"statistic", finite(d.statistic)}, {"score", finite(d.score)}, {"score_is", d.score_is}, {"p", d.p}, {"chance", d.chance}, {"repetitions", d.repetitions}, {"excess", finite(d.excess)},
           {"trial", d.trial}, {"from", finite(d.from)}, {"to", finite(d.to)}};
 }
 
@@ -215,70 +214,7 @@ Json report_json(const Dataset& d, const Result& r) {
 
 namespace {
 
-/// The effect with the values that a scene runs it with: a diffusivity is that of Biot's theory, as the mesh found it, not that of the series.
-const NamedEffect& as_run(const NamedEffect& e, const Result& r) {
-  if (e.effect != Effect::poroelastic_drainage || !r.confirmation || !r.confirmation->holds) return e;
-  const auto at = std::find_if(r.confirmation->values.begin(), r.confirmation->values.end(), [](const NamedEffect& v) { return v.effect == Effect::poroelastic_drainage; });
-  return at == r.confirmation->values.end() ? e : *at;
-}
-
-/// A relaxation that is not made of exponentials, as the sum of them that a scene can run.
-std::string spectrum_text(const NamedEffect& e) {
-  const auto of = [&](const char* name) {
-    const auto at = std::find_if(e.parameters.begin(), e.parameters.end(), [&](const Estimate& p) { return p.name == name; });
-    return at == e.parameters.end() ? 0.0 : at->value;
-  };
-  if (e.effect != Effect::viscoelastic_relaxation || of("order") <= 0.0) return "";
-  const Kernel k = fractional(of("g1"), of("tau1"), of("order"));
-  std::string out = "    prony:\n";
-  for (std::size_t i = 0; i < k.tau.size(); ++i) {
-    char text[100];
-    std::snprintf(text, sizeof text, "      - { share: \"%.6g\", time: \"%.6g s\" }\n", k.weight[i], k.tau[i]);
-    out += text;
-  }
-  return out;
-}
-
 }  // namespace
-
-std::string model_yaml(const Dataset& d, const Result& r, const std::string& program) {
-  std::ostringstream s;
-  const auto value = [&](const Estimate& e, const std::string& indent) {
-    const std::string unit = e.unit == "-" ? "" : " " + e.unit;
-    char text[240];
-    std::snprintf(text, sizeof text, "{ value: \"%.6g%s\", low: \"%.6g%s\", high: \"%.6g%s\" }", e.value, unit.c_str(), e.low, unit.c_str(), e.high, unit.c_str());
-    s << indent << e.name << ": " << text << "\n";
-  };
-  s << "# Baseline with what the measurements showed to be missing. Values with their 95 % intervals.\n"
-    << "format: filum-model/1\ntitle: \"" << d.name << "\"\nrig: " << info(d.rig).name << "\nbaseline_model: " << d.model << "\nbaseline:\n";
-  for (const Estimate& e : r.baseline) value(e, "  ");
-  if (r.baseline.empty()) s << "  {}\n";
-  s << "effects:\n";
-  for (const NamedEffect& named : r.effects) {
-    const NamedEffect& e = as_run(named, r);
-    s << "  - name: " << info(e.effect).name << "\n    on: true\n    form: \"" << e.form << "\"\n    parameters:\n";
-    for (const Estimate& p : e.parameters) value(p, "      ");
-    s << spectrum_text(e);
-  }
-  s << "partial: " << (r.partial ? "true" : "false") << "\nvalid_for:\n";
-  for (const Channel& c : d.channels) {
-    if (!c.input) continue;
-    double low = INFINITY, high = -INFINITY;
-    for (const Trial& t : d.trials) {
-      const Eigen::VectorXd& v = c.name == "time" ? t.time : t.at(c.name);
-      low = std::min(low, v.minCoeff());
-      high = std::max(high, v.maxCoeff());
-    }
-    std::string unit;
-    for (const ChannelInfo& k : info(d.rig).channels)
-      if (k.name == c.name && k.unit != "-") unit = " " + k.unit;
-    char text[160];
-    std::snprintf(text, sizeof text, "  %s: [\"%.6g%s\", \"%.6g%s\"]\n", c.name.c_str(), low, unit.c_str(), high, unit.c_str());
-    s << text;
-  }
-  s << "source: { dataset: \"" << d.name << "\", hash: \"" << hash_text(d) << "\", program: \"" << program << "\" }\n";
-  return s.str();
-}
 
 void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program) {
   std::filesystem::create_directories(folder);

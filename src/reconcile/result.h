@@ -96,6 +96,7 @@ struct Confirmation {
 struct Detection {
   double statistic = 0.0;   // largest whitened sum over any window, over all records
   double score = 0.0;       // best score test of the catalogue: fall of chi2
+  std::string score_is = "best score test of the catalogue";
   double p = 1.0;           // of the rarer of the two among the repetitions, (1 + k)/(1 + B), doubled
   int repetitions = 0;
   std::vector<double> null_scores;  // best score test of each repetition, ascending

@@ -74,6 +74,7 @@ struct HoldRules {
   double left_power = 1.25;          // times the noise's, if it is material
   double named_share = 0.3;          // of the power that the names must hold beside it
 };
+inline constexpr HoldRules kHoldRules;
 
 /// What the stages take as given. Not to be set from outside, but listed with the rest.
 namespace assumed {

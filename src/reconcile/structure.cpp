@@ -95,6 +95,24 @@ double line_remainder(const Fitter& fitter, const Fit& fit, std::size_t output) 
   return records > 0 && std::isfinite(sum) ? sum / records : 0.0;
 }
 
+/// Variance [SI2] that following a film adds to an output: its own, and that of filmed inputs by the output's travel over theirs.
+double tracked_variance(const Dataset& d, const std::string& output, double full_scale) {
+  double most = 0.0;
+  for (const Trial& t : d.trials) {
+    if (t.hold_out) continue;
+    double variance = 0.0;
+    for (const auto& [name, sd] : t.tracked) {
+      double low = INFINITY, high = -INFINITY;
+      for (const double v : t.at(name))
+        if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+      const double slope = name == output ? 1.0 : d.channel(name).input && high > low ? full_scale / (high - low) : 0.0;
+      variance += slope * slope * sd * sd;
+    }
+    most = std::max(most, variance);
+  }
+  return most;
+}
+
 }  // namespace
 
 Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
@@ -114,11 +132,11 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
     const double v1 = variogram(records, 1), v2 = variogram(records, 2), v4 = variogram(records, 4);
     OutputNoise& o = noise.output[c];
     const Channel& channel = d.channel(d.outputs[c]);
-    const double floor = 1e-5 * o.full_scale;
+    const double film = tracked_variance(d, d.outputs[c], o.full_scale), floor = std::max(1e-5 * o.full_scale, std::sqrt(film));
     if (channel.noise > 0.0) {
       o.from = "stated";
-      // jitter of the clock and steps of the converter may add to what is stated, but not anything
-      const double most = assumed::kStatedMost * std::sqrt(channel.noise * channel.noise + line_remainder(fitter, fit, c));
+      // jitter of the clock, steps of the converter and errors of a film may add to what is stated, but not anything
+      const double most = assumed::kStatedMost * std::sqrt(channel.noise * channel.noise + line_remainder(fitter, fit, c) + film);
       o.sigma = std::max(std::clamp(std::sqrt(0.5 * v1), channel.noise, most), floor);
       o.rho = std::clamp(1.0 - 0.5 * v1 / (o.sigma * o.sigma), 0.0, 0.98);
       o.white = 0.0;
@@ -137,6 +155,7 @@ Noise estimate_noise(const Fitter& fitter, const Fit& fit) {
     }
     o.white = 0.0;
     if (replicates) o = likeliest(records, o, floor, std::max(rms, floor), assumed::kWhiteWorth);
+    if (film > 0.0 && o.sigma <= floor) o.from = "tracking in the film";
   }
   return noise;
 }

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <set>
 
+#include "physics/tissue_law.h"
 #include "reconcile/hereditary.h"
 #include "reconcile/model.h"
 
@@ -55,14 +56,10 @@ double invariant(double e, Mode mode) {
   return l * l + 2.0 / l - 3.0;
 }
 
-/// Stress over small-strain modulus (E, or G in shear) by Ogden's one-term law.
-double ogden(double e, double alpha, Mode mode) {
-  if (mode == Mode::shear) {
-    const double root = std::sqrt(1.0 + 0.25 * e * e), l = 0.5 * e + root;
-    return (std::pow(l, alpha) - std::pow(l, -alpha)) / (alpha * 2.0 * root);
-  }
-  const double l = std::max(1.0 + e, 0.05);
-  return 2.0 / (3.0 * alpha) * (std::pow(l, alpha - 1.0) - std::pow(l, -0.5 * alpha - 1.0));
+/// Stress of simple shear over G by Ogden's one-term law.
+double sheared_ogden(double e, double alpha) {
+  const double root = std::sqrt(1.0 + 0.25 * e * e), l = 0.5 * e + root;
+  return (std::pow(l, alpha) - std::pow(l, -alpha)) / (alpha * 2.0 * root);
 }
 
 /// The difference of the stiffening law from the linear one, over the modulus.
@@ -152,8 +149,9 @@ double Tissue::elastic(double e, const Geometry& g, const Setting& s) const {
   double stress = e;
   if (const double* p = s.on(Effect::strain_stiffening)) stress += stiffening(e, p[0], s.form(Effect::strain_stiffening), g.mode);
   if (const double* p = s.on(Effect::tension_compression_asymmetry)) {
-    if (s.form(Effect::tension_compression_asymmetry) == 0) stress += ogden(e, p[0], g.mode) - e;
-    else if (g.mode != Mode::shear) stress += (0.25 * p[0] - 1.5) * (s.form(Effect::tension_compression_asymmetry) == 1 ? e * e : 0.1 * std::abs(e));
+    const int form = s.form(Effect::tension_compression_asymmetry);
+    if (g.mode != Mode::shear) stress += asymmetric_stress(e, p[0], form);
+    else if (form == 0) stress += sheared_ogden(e, p[0]) - e;
   }
   return stress;
 }

@@ -1,6 +1,7 @@
 #include "world/measured_model.h"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "base/error.h"
@@ -59,12 +60,19 @@ bool MeasuredModel::read_tissue(const std::string& name, const YamlNode& effect,
   const std::string form = effect.text_or("form", "");
   const Range share{0.0, 1.0, true};
   const bool block = rig_ == "tissue-block";
-  if (name == "strain-stiffening" && block) {
-    law_.stiffening = estimate(parameters, "c20_over_c10", "-", Range::positive());
-    law_.exponential = form == "exponential" || form == "Demiray";
-  } else if (name == "first-cycle-softening" && block) {
+  // a press gives its laws by depth over height: the elements' own follow from what that strain is in the tissue (reconcile/full_press)
+  const double local = block ? 1.0 : effect.number_or("local_strain_square", 0.0, Range::positive());
+  const bool placed = local > 0.0 || (name != "strain-stiffening" && name != "first-cycle-softening");
+  if (!placed) return false;
+  if (name == "strain-stiffening") {
+    law_.stiffening = estimate(parameters, "c20_over_c10", "-", Range::positive()) / local;
+    law_.exponential = form.starts_with("exponential") || form == "Demiray" || form.find("exp(") != std::string::npos;
+  } else if (name == "tension-compression-asymmetry" && block) {
+    law_.asymmetry = estimate(parameters, "alpha", "-", {-200.0, -1e-3});
+    law_.asymmetry_form = form.starts_with("quadratic") ? 1 : form.starts_with("two moduli") ? 2 : 0;
+  } else if (name == "first-cycle-softening") {
     law_.softening = estimate(parameters, "d", "-", share);
-    softening_energy_ = estimate(parameters, "W0", "Pa", Range::positive());
+    softening_energy_ = local * estimate(parameters, "W0", "Pa", Range::positive());
     law_.softening_form = form.starts_with("error") ? 1 : form.starts_with("x/(1 + x)") ? 2 : 0;
   } else if (name == "permanent-set") {
     if (form.starts_with("grows")) effect.refuse("form", "fraction of the largest past strain: of one that grows with its square the file does not say where it is itself");
@@ -78,22 +86,62 @@ bool MeasuredModel::read_tissue(const std::string& name, const YamlNode& effect,
   return true;
 }
 
-void MeasuredModel::read_effect(const YamlNode& effect) {
+namespace {
+
+/// Why no scene shows an effect, and what it would take.
+std::string why_not(const std::string& rig, const std::string& name) {
+  static const std::map<std::string, std::string> reasons = {
+      {"sensor-lag", "is the sensor's, and no scene has that sensor; with `on: false` the rest runs"},
+      {"sensor-drift", "is the sensor's, and no scene has that sensor; with `on: false` the rest runs"},
+      {"saturation", "is the sensor's, and no scene has that sensor; with `on: false` the rest runs"},
+      {"mains-hum", "is the sensor's, and no scene has that sensor; with `on: false` the rest runs"},
+      {"rig-compliance", "is the testing machine's, not the specimen's; with `on: false` the rest runs"},
+      {"hysteresis", "is the machine's play, not the specimen's; with `on: false` the rest runs"},
+      {"platen-friction", "is between specimen and platens, of which a scene has none; with `on: false` the rest runs"},
+      {"pulsation", "would take tissue that moves with heart and breath: the scene's rests"},
+      {"contact-adhesion", "would take blade contacts that pull until they part: the scene's only push"},
+      {"bending-creep", "would take a bending memory in the thread's state: the scene's thread has a plastic limit only"},
+      {"permanent-set", "of a thread would take a set that grows with the largest curvature: the scene's sets beyond a sharp limit"},
+      {"speed-dependent-friction", "would take contacts whose friction goes by their sliding speed: the scene's is Coulomb's"},
+      {"bending-stiffness-loss", "is what the scene's thread does of itself: it bends over the bar with its own stiffness"},
+      {"viscous-drag", "would take a drag on the thread in its medium: the scene has none"},
+      {"strain-stiffening", "of a press would take the number local_strain_square beside it, by which depth over height becomes the tissue's own strain"},
+      {"first-cycle-softening", "of a press would take the number local_strain_square beside it, by which depth over height becomes the tissue's own strain"}};
+  const bool scene = rig == "tissue-block" || rig == "spatula-press" || rig == "suture-cantilever" || rig == "suture-pull";
+  if (!scene) return "is of a rig that no scene stands on";
+  const auto found = reasons.find(name);
+  return found == reasons.end() ? "is known to no scene of " + rig : found->second;
+}
+
+}  // namespace
+
+bool MeasuredModel::read_effect(const YamlNode& effect) {
   const std::string name = effect.text("name");
   const bool on = effect.flag_or("on", true) && on_;
   const YamlNode parameters = effect.map("parameters");
-  for (const char* key : {"form", "prony"}) effect.has(key);
+  for (const char* key : {"form", "prony", "note", "local_strain_square"}) effect.has(key);
   if (!on) {
     for (const std::string& key : parameters.keys()) parameters.has(key);
-    return;
+    return true;
   }
   const bool tissue = rig_ == "tissue-block" || rig_ == "spatula-press";
-  if (tissue && read_tissue(name, effect, parameters)) return;
-  if (tissue && name == "viscoelastic-relaxation") relaxation_ = read_relaxation(effect, parameters);
-  else if (rig_ == "suture-cantilever" && name == "rest-curvature") curvature_ = read_curvature(effect, parameters);
-  else
-    effect.refuse("name", std::string(tissue ? "viscoelastic-relaxation" : rig_ == "suture-cantilever" ? "rest-curvature" : "no effect of this rig") +
-                              ": no scene shows another one of " + rig_ + "; `on: false` beside its name leaves it out");
+  if (tissue && read_tissue(name, effect, parameters)) return true;
+  if (tissue && name == "viscoelastic-relaxation") return relaxation_ = read_relaxation(effect, parameters), true;
+  if (rig_ == "suture-cantilever" && name == "rest-curvature") return curvature_ = read_curvature(effect, parameters), true;
+  return false;
+}
+
+void MeasuredModel::read_effects(const YamlNode& file) {
+  std::string refused;
+  std::optional<YamlNode> first;
+  for (const YamlNode& effect : file.items_or_none("effects")) {
+    if (read_effect(effect)) continue;
+    if (!first) first = effect;
+    const std::string name = effect.text("name");
+    refused += (refused.empty() ? "" : "; ") + name + " " + why_not(rig_, name);
+  }
+  if (!first) return;
+  first->refuse("name", std::string(rig_ == "suture-cantilever" ? "rest-curvature" : rig_ == "suture-pull" ? "no effect of this rig" : "effects that a scene shows") + ", or `on: false` beside the name, which leaves an effect out: " + refused);
 }
 
 MeasuredModel MeasuredModel::load(const std::string& path) {
@@ -111,7 +159,7 @@ MeasuredModel MeasuredModel::load(const std::string& path) {
     else if (name == "friction_coefficient") m.friction_ = estimate(baseline, name, "-", Range::between(0.0, 2.0));
     else baseline.has(name);  // of a rig that no scene stands on: refused by apply()
   }
-  for (const YamlNode& effect : file.items_or_none("effects")) m.read_effect(effect);
+  m.read_effects(file);
   file.finish();
   return m;
 }

@@ -3,11 +3,11 @@
 //   tissue-block, spatula-press -> a scene with a brain: youngs_modulus of the grey matter, white keeping its ratio to grey,
 //     poissons_ratio of both; viscoelastic-relaxation as a Prony series in place of the scene's own relaxation, with the modulus that of
 //     a sudden load (g(0) = 1), as in the rig;
-//     strain-stiffening, first-cycle-softening (of a block: a press has them by depth over height, which is no strain of the tissue's), permanent-set
-//     in each element (physics/tissue_law); poroelastic-drainage through the surface that no blade covers (physics/pore_flow).
+//     strain-stiffening, first-cycle-softening (of a press with the number `local_strain_square`, by which depth over height becomes the tissue's own
+//     strain), tension-compression-asymmetry of a block, permanent-set in each element (physics/tissue_law); poroelastic-drainage through the surface that no blade covers (physics/pore_flow).
 //   suture-cantilever, suture-pull -> a scene with a thread: youngs_modulus scales EA, EI and GJ by E pi d^4/64 over the scene's EI;
 //     friction_coefficient is thread on thread; rest-curvature is the thread's, in the plane of the sheet.
-// Whatever the scene cannot show is refused; `on: false` at an effect, or at the top for the whole file, leaves it out, and what is
+// Whatever the scene cannot show is refused, all of it at once, with what it would take; `on: false` at an effect, or at the top for the whole file, leaves it out, and what is
 // left out takes no part: the scene's states are then bit for bit those without the file. Test: measured_model_test.
 
 #include <optional>
@@ -36,7 +36,8 @@ class MeasuredModel {
   void apply_to_thread(Model& scene) const;
 
  private:
-  void read_effect(const YamlNode& effect);
+  void read_effects(const YamlNode& file);
+  bool read_effect(const YamlNode& effect);
   bool read_tissue(const std::string& name, const YamlNode& effect, const YamlNode& parameters);
   void apply_tissue(BrainModel& brain) const;
   [[noreturn]] void refuse_rig(const std::string& scene, const std::string& rigs) const;

@@ -84,6 +84,7 @@ TEST(YamlFile, UnknownKeyIsNamedWithItsLine) {
   const InputError error = error_of([&] { node.finish(); });
   EXPECT_EQ(error.file, "f.yaml:2");
   EXPECT_EQ(error.field, "b");
+  EXPECT_EQ(error.expected, "no such field here, only: a");
 }
 
 TEST(YamlFile, UnknownKeyInsideAListItemIsNamed) {
@@ -92,6 +93,16 @@ TEST(YamlFile, UnknownKeyInsideAListItemIsNamed) {
   const InputError error = error_of([&] { node.finish(); });
   EXPECT_EQ(error.file, "f.yaml:4");
   EXPECT_EQ(error.field, "tools[1].nmae");
+  EXPECT_EQ(error.expected, "no such field here, only: name");
+}
+
+TEST(YamlFile, ScalarsOfAFreeFieldAtAnyDepth) {
+  const YamlNode node = YamlNode::parse("a: 1\nb: [1, [2, 3]]\nc: { x: 4, y: [{ z: 5 }] }\n", "f.yaml");
+  EXPECT_EQ(node.scalars("a"), std::vector<std::string>{"1"});
+  EXPECT_EQ(node.scalars("b"), (std::vector<std::string>{"1", "2", "3"}));
+  EXPECT_EQ(node.scalars("c"), (std::vector<std::string>{"4", "5"}));
+  EXPECT_THROW(node.scalars("d"), InputError);
+  EXPECT_NO_THROW(node.finish());
 }
 
 TEST(YamlFile, WrongUnitNamesFileLineFieldValueAndExpected) {

@@ -50,6 +50,25 @@ TEST(TissueLaw, StiffensAsYeohAndDemiray) {
   }
 }
 
+/// Stretched by e the block has 2G/(2/3 E) times what the uniaxial law has more: closed form at both signs, whatever the form; without it nothing.
+TEST(TissueLaw, IsStifferInCompressionAsOgden) {
+  TissueLaw law;
+  EXPECT_TRUE(law.linear());
+  for (const int form : {0, 1, 2})
+    for (const double alpha : {-8.0, -20.0})
+      for (const double e : {-0.1, -0.03, 0.04, 0.1}) {
+        law.asymmetry = alpha;
+        law.asymmetry_form = form;
+        const double l = 1.0 + e, ogden = 2.0 / (3.0 * alpha) * (std::pow(l, alpha - 1.0) - std::pow(l, -0.5 * alpha - 1.0)) - e, b = 0.25 * alpha - 1.5;
+        const double more = form == 0 ? ogden : form == 1 ? b * e * e : 0.1 * b * std::abs(e);
+        EXPECT_NEAR(Block(law).beyond(e) / (2.0 * kG), more, 2e-3 * std::abs(more) + 1e-9) << form << " " << alpha << " " << e;  // chords of the table
+      }
+  law.asymmetry_form = 0;
+  law.limit = 3.0;  // h has a slope of two at most where it is stiffer
+  EXPECT_LT(Block(law).beyond(-0.1) / (2.0 * kG), -0.03);
+  EXPECT_GT(Block(law).beyond(-0.1) / (2.0 * kG), -0.2 / 3.0);
+}
+
 TEST(TissueLaw, SoftensBelowTheLargestPastStrainOnly) {
   TissueLaw law;
   law.softening = 0.3;

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace filum::reconcile {
-namespace {
+namespace baseline_test {
 
 Dataset record() {
   Dataset d;
@@ -121,5 +121,5 @@ TEST(Baseline, AStartFiveTimesOffComesBack) {
   EXPECT_EQ(summary.same(), 3);
 }
 
-}  // namespace
+}  // namespace baseline_test
 }  // namespace filum::reconcile

@@ -10,7 +10,7 @@
 #include "reconcile/rivals.h"
 
 namespace filum::reconcile {
-namespace {
+namespace challenge_test {
 
 /// Two rates, the faster one twice, and two records of a flatter block; `more` goes to the last trial.
 std::string trials(const std::string& more = "") {
@@ -145,5 +145,5 @@ TEST(Challenge, InstrumentsAreFittedHoweverFarTheBestIsAhead) {
   EXPECT_GE(behind, 1);
 }
 
-}  // namespace
+}  // namespace challenge_test
 }  // namespace filum::reconcile

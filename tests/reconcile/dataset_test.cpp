@@ -198,7 +198,7 @@ TEST(Dataset, RefusesWhatIsNoFile) {
   EXPECT_TRUE(says(of("a.csv", pipe), "a.csv: file: found a pipe")) << of("a.csv", pipe);
   EXPECT_TRUE(says(of("a.csv", device), "a.csv: file: found a pipe or a device")) << of("a.csv", device);
   EXPECT_TRUE(says(of("a.csv", huge), "a.csv: file: found more than 256 MiB")) << of("a.csv", huge);
-  EXPECT_TRUE(says(of("a.csv", [](const std::string&) {}), "a.csv: file: found no such file"));
+  EXPECT_TRUE(says(of("a.csv", [](const std::string&) {}), "trials[0].file: found \"a.csv\", expected a file in the dataset's folder (no such file: "));
   EXPECT_TRUE(says(of("experiment.yaml", folder), "experiment.yaml: file: found a folder"));
   EXPECT_TRUE(says(of("experiment.yaml", pipe), "experiment.yaml: file: found a pipe"));
 }

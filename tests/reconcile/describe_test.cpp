@@ -8,7 +8,7 @@
 #include "reconcile/result.h"
 
 namespace filum::reconcile {
-namespace {
+namespace describe_test {
 
 /// A thread that slides over a cylinder at four wrap angles and two speeds; `more` is added to the pull [N].
 Dataset slides(const std::function<double(double hold, double wrap, double speed)>& more) {
@@ -117,5 +117,5 @@ TEST(Describe, LikenessIsTheWholeTable) {
   for (const double m : all.masked) EXPECT_TRUE(m >= 0.0 && m < 1.0) << m;
 }
 
-}  // namespace
+}  // namespace describe_test
 }  // namespace filum::reconcile

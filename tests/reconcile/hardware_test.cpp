@@ -122,6 +122,38 @@ TEST(Hardware, NoticesATimeThatIsWrongByAThousand) {
     }
 }
 
+/// A clock against what the protocol holds, what the needle's speed makes of its way, and what a hand can be seen by.
+TEST(Hardware, NoticesAClockThatIsWrongByAThousand) {
+  const auto said = [](Rig r, double times, const std::function<void(Trial&)>& fill) {
+    Dataset d;
+    d.rig = r;
+    Trial t;
+    t.file = "a.csv";
+    t.time = Eigen::VectorXd::LinSpaced(200, 0.0, 10.0 * times);
+    fill(t);
+    d.trials = {t};
+    return check_units(d, {});
+  };
+  for (const double times : {1e-3, 1.0, 1e3}) {
+    const std::size_t many = times == 1.0 ? 0u : 1u;
+    const auto held = said(Rig::suture_cantilever, times, [](Trial& t) { t.protocol["hold"] = "4 s"; });
+    ASSERT_EQ(held.size(), many) << times;
+    const auto needle = said(Rig::needle_insertion, times, [](Trial& t) { t.data["depth"] = Eigen::VectorXd::LinSpaced(200, 0.0, 0.01), t.data["speed"] = Eigen::VectorXd::Constant(200, 1e-3); });
+    ASSERT_EQ(needle.size(), many) << times;
+    const auto pull = said(Rig::suture_pull, times, [](Trial&) {});
+    ASSERT_EQ(pull.size(), many) << times;
+    const auto thread = said(Rig::suture_cantilever, times, [](Trial&) {});
+    ASSERT_EQ(thread.size(), times < 1.0 ? 1u : 0u) << times;
+    const auto hand = said(Rig::tip_hold, times, [](Trial&) {});
+    ASSERT_EQ(hand.size(), many) << times;
+    if (many == 0) continue;
+    EXPECT_NE(held[0].found.find("its protocol holds for 4 s: is the unit of time wrong by 1000?"), std::string::npos) << held[0].found;
+    EXPECT_NE(needle[0].found.find("is the unit of time, depth or speed wrong by 1000?"), std::string::npos) << needle[0].found;
+    EXPECT_NE(pull[0].found.find("the record lasts"), std::string::npos) << pull[0].found;
+    EXPECT_NE(hand[0].found.find("samples a second, expected 4 to 4000"), std::string::npos) << hand[0].found;
+  }
+}
+
 TEST(Hardware, SaysSizesInTheChannelsOwnUnit) {
   Dataset d = rig(Rig::tip_hold, "x", 0.3);
   d.channels[0].unit = "mm", d.channels[0].scale = 1e-3;

@@ -150,6 +150,55 @@ TEST(Hold, RecordsThatAreHeldOutChooseAndFitNothing) {
   EXPECT_NE(r.held_out.after, other.held_out.after);
 }
 
+const Screened& screened_of(const Result& r, Effect effect) {
+  for (const Screened& s : r.screened)
+    if (s.effect == effect) return s;
+  throw std::runtime_error("not screened");
+}
+
+/// A still hand's residual is one of those that noise makes; a hum of two thirds of the noise is not, and every effect of the rig has its line.
+TEST(Hold, DetectionIsByRepetitionsOfAStillHand) {
+  const Signal still = [](Rng&) { return [](double) { return 0.0; }; };
+  int low = 0, middling = 0;
+  for (const std::uint64_t seed : {11, 12, 13, 14, 15, 16}) {
+    const Result r = held(100.0, seed, still);
+    ASSERT_TRUE(r.detection.has_value());
+    EXPECT_EQ(r.verdict, "agree");
+    EXPECT_EQ(r.detection->repetitions, 500);
+    EXPECT_TRUE(std::is_sorted(r.detection->null_scores.begin(), r.detection->null_scores.end()));
+    low += r.detection->p < 0.05 ? 1 : 0;
+    middling += r.detection->p < 0.9 ? 1 : 0;
+    EXPECT_EQ(r.screened.size(), effects_of(Rig::tip_hold).size());
+    for (const Screened& s : r.screened) EXPECT_EQ(s.what.rfind("not fitted", 0) == 0, s.effect != Effect::sensor_lag && s.effect != Effect::sensor_drift) << info(s.effect).name << ": " << s.what;
+  }
+  EXPECT_LE(low, 1);
+  EXPECT_GE(middling, 2);
+  const Result r = held(130.0, 5, [](Rng& rng) { return sine(rng, 50.0, 2.7); });
+  EXPECT_LE(r.detection->p, 2.0 / 501.0 + 1e-12);
+  EXPECT_GT(r.detection->score, r.detection->null_scores.back());
+  EXPECT_EQ(screened_of(r, Effect::mains_hum).what, "fitted");
+  EXPECT_GT(screened_of(r, Effect::mains_hum).gain, 50.0);
+  EXPECT_EQ(screened_of(r, Effect::sensor_lag).what.rfind("these trials could not show it: ", 0), 0u);
+}
+
+/// The place of a beat is learnt in one half of the records and explains the other; of one that stops it does not.
+TEST(Hold, WithoutRecordsHeldOutHalvesJudgeEachOther) {
+  const Result whole = held(100.0, 7, [](Rng& rng) { return sine(rng, 1.2, 10.0); });
+  ASSERT_EQ(whole.verdict, "effect");
+  EXPECT_NE(whole.held_out_how.find("taken from one half of every record and judged in the other"), std::string::npos) << whole.held_out_how;
+  EXPECT_NE(whole.held_out.before, whole.fit.before);
+  EXPECT_GT(whole.held_out.before, 1.8);
+  EXPECT_LT(whole.held_out.after, 1.1);
+  // a beat that stops: the second half puts it anywhere, and so explains nothing of the first
+  const Result stops = held(100.0, 7, [](Rng& rng) {
+    const auto beat = sine(rng, 1.2, 10.0);
+    return [=](double t) { return t < 12.5 ? beat(t) : 0.0; };
+  });
+  ASSERT_EQ(stops.verdict, "effect") << stops.sentence;
+  EXPECT_LT(stops.fit.after, 1.1);
+  EXPECT_GT(stops.held_out.after, 1.3);
+}
+
 TEST(Hold, WhatIsLeftIsWithoutTheLine) {
   const Result r = held(130.0, 5, [](Rng& rng) { return sine(rng, 50.0, 9.0); });
   ASSERT_EQ(r.verdict, "effect");

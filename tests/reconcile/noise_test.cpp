@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "base/rng.h"
+#include "records.h"
 #include "reconcile/noise.h"
+#include "reconcile/result.h"
 
 namespace filum::reconcile {
 namespace noise_test {
@@ -77,6 +79,29 @@ TEST(Noise, NoShareIsAddedWhereThereIsNone) {
     changed += likeliest(drawn(noise_of(2e-3, rho, 0.0), 4, 200, seed), noise_of(1.0, rho, 0.0), 1e-6, 1.0, 8.0).white > 0.0 ? 1 : 0;
   }
   EXPECT_LE(changed, 2);  // more than 2 of 60 once in 300 times
+}
+
+/// A displacement that was read off a film to 0.7 um moves the force of a block of 10 N/m by 7 uN: less noise than that there cannot be, and as much may
+/// be there beside what the dataset states of its force.
+TEST(Noise, WhatAFilmAddsIsPartOfIt) {
+  const auto noise = [](double sd, double there, const std::string& stated) {
+    Folder f;
+    Rng rng(4);
+    std::string yaml = block_yaml("  - { file: a.csv, protocol: { mode: compression, rate: \"0.1 mm/s\" } }\n  - { file: b.csv, protocol: { mode: compression, rate: \"0.4 mm/s\" } }\n");
+    if (!stated.empty()) yaml.replace(yaml.find("kind: output"), 12, "kind: output, noise: \"" + stated + "\"");
+    f.write("experiment.yaml", yaml);
+    for (const auto& [name, speed] : {std::pair{"a.csv", 1.0}, {"b.csv", 4.0}}) f.write(name, block_csv([&](double, double u, int) { return 10.0 * u + there * rng.normal(); }, speed));
+    Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+    if (sd > 0.0)
+      for (Trial& t : d.trials) t.tracked["displacement"] = sd;
+    return reconcile(d).noise.output.at(0);
+  };
+  EXPECT_NEAR(noise(0.0, 0.001, "").sigma / 1e-6, 1.0, 0.15);
+  const OutputNoise film = noise(0.7e-6, 0.001, "");
+  EXPECT_NEAR(film.sigma / 7e-6, 1.0, 0.03);
+  EXPECT_EQ(film.from, "tracking in the film");
+  EXPECT_LT(noise(0.0, 0.007, "0.001 mN").sigma, 2e-6);
+  EXPECT_NEAR(noise(0.7e-6, 0.007, "0.001 mN").sigma / 7e-6, 1.0, 0.15);
 }
 
 }  // namespace noise_test

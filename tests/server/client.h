@@ -49,7 +49,7 @@ class Client {
 /// What a request brings besides its target; empty: a browser's own.
 struct Asked {
   boost::beast::http::verb verb = boost::beast::http::verb::get;
-  std::string host, body, origin, type;
+  std::string host{}, body{}, origin{}, type{};
 };
 
 inline boost::beast::http::response<boost::beast::http::string_body> fetch(std::uint16_t port, const std::string& target, const Asked& asked = {}) {

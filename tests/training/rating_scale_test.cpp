@@ -9,7 +9,7 @@
 namespace filum {
 namespace rating_scale_test {
 
-RatingScale mars10() { return load_rating_scale(std::string(FILUM_SOURCE_DIR) + "/curricula/scales/mars10.yaml"); }
+RatingScale mars10() { return load_rating_scale(FILUM_SOURCE_DIR "/curricula/scales/mars10.yaml"); }
 
 /// Eight stitches round a vessel of thickness 0.1 mm, 0.4 mm apart, bites of 0.25 mm, a join that leaks 1 ml/min.
 NeedleReport good() {

@@ -12,7 +12,7 @@ namespace step_recogniser_test {
 using namespace shapes;
 
 Task square_task() {
-  return load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/knot-square/task.yaml");
+  return load_task(FILUM_SOURCE_DIR "/curricula/knot-square/task.yaml");
 }
 
 class Watched {

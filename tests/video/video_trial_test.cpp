@@ -145,6 +145,40 @@ TEST(VideoTrial, RelaxationOfABlockIsNamedFromFilms) {
   EXPECT_NEAR(r.effects[0].parameters[1].value, 2.0, 0.2);
 }
 
+/// A blade filmed from the side on its way into tissue, of two sizes; the force beside it relaxes by g1 = 0.4 with tau = 2 s whatever the size.
+TEST(VideoTrial, RelaxationUnderABladeIsNamedFromFilms) {
+  Folder f;
+  std::string trials;
+  std::uint64_t seed = 80;
+  Rng rng(78);
+  for (const auto& [name, ramp, length, stiffness] : {std::tuple{"a", 0.8, 14, 20.0}, {"b", 3.2, 14, 20.0}, {"c", 0.8, 28, 41.0}, {"d", 3.2, 28, 41.0}}) {
+    const auto depth = [ramp = ramp](double t) { return 30.0 * std::min(t / ramp, 1.0); };  // [px]
+    ASSERT_TRUE(render(f.file(std::string(name) + ".avi"), 200, 100, 140, 1.5, Waves(seed), [&](double x, double y, int k) { return std::array{x, y - depth(k / 25.0)}; }, seed));
+    ++seed;
+    std::ostringstream csv;
+    csv << "t,F\n";
+    double q = 0.0;
+    const double h = 0.04;
+    for (int i = 0; i < 200; ++i) {
+      if (i > 0) q = q * std::exp(-h / 2.0) + 0.02 * (depth(h * i) - depth(h * (i - 1))) * 2.0 / h * -std::expm1(-h / 2.0);
+      csv << h * i << "," << stiffness * (0.6 * 0.02 * depth(h * i) + 0.4 * q) + 0.05 * rng.normal() << "\n";
+    }
+    f.write(std::string(name) + ".csv", csv.str());
+    trials += "  - { file: " + std::string(name) + ".avi, protocol: { rate: \"" + std::to_string(0.6 / ramp) + " mm/s\" }, specimen: { blade_length: \"" + std::to_string(length) + " mm\", blade_width: \"" + std::to_string(length / 2) +
+              " mm\" }, video: { scale: \"20 um\", points: [ { name: blade, x: 50, y: 40 } ] } }\n";
+  }
+  f.write("experiment.yaml",
+          "format: filum-experiment/1\nrig: spatula-press\nspecimen: { shape: box, length: \"60 mm\", width: \"50 mm\", height: \"20 mm\", blade_length: \"14 mm\", blade_width: \"7 mm\" }\n"
+          "model: { file: brain/linear, free: [youngs_modulus] }\nchannels:\n  - { name: time, column: t, unit: s }\n  - { name: depth, column: z, unit: mm, kind: input }\n  - { name: force, column: F, unit: mN, kind: output }\ntrials:\n" + trials);
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  for (const Trial& t : d.trials) EXPECT_NEAR(t.at("depth")[199], 0.6e-3, 2e-6);
+  const Result r = reconcile(d);
+  ASSERT_EQ(r.verdict, "effect") << r.sentence;
+  EXPECT_EQ(r.effects[0].effect, Effect::viscoelastic_relaxation);
+  EXPECT_NEAR(r.effects[0].parameters[0].value, 0.4, 0.04);
+  EXPECT_NEAR(r.effects[0].parameters[1].value, 2.0, 0.2);
+}
+
 TEST(VideoTrial, SaysWhatWasLostWhereAndWhy) {
   Folder f;
   film_a_block(f, 1.5, 4.0);

@@ -141,6 +141,21 @@ TEST_F(MeasuredModelTest, TissueStiffensSoftensAndSetsAsItsModelSays) {
   const auto set = with("{ name: permanent-set, form: fraction of the largest past strain, parameters: { fraction: { value: \"0.15\" } } }");
   EXPECT_LT(set[1], 0.95 * plain[1]);
   EXPECT_LT(set[0], plain[0]);
+  const auto compressed = with("{ name: tension-compression-asymmetry, form: Ogden, parameters: { alpha: { value: \"-12\" } } }");
+  EXPECT_GT(compressed[0], 1.02 * plain[0]);
+  EXPECT_GT(compressed[0] / plain[0], compressed[1] / plain[1]);
+  const auto off = with("{ name: tension-compression-asymmetry, on: false, form: Ogden, parameters: { alpha: { value: \"-12\" } } }");
+  EXPECT_EQ(off, plain);
+}
+
+/// What a blade measured goes by depth over height: with the tissue's own strain beside it, it is the same law as a block's.
+TEST_F(MeasuredModelTest, ABladesStiffeningAndSofteningAreThoseOfTheTissueUnderIt) {
+  const std::string own = "{ youngs_modulus: { value: \"2900 Pa\" }, poissons_ratio: { value: \"0.45\" } }";
+  const auto with = [&](const std::string& rig, const std::string& effect) { return two_presses(scene("press-to-target", file(rig, own, "\n  - " + effect))); };
+  EXPECT_EQ(with("spatula-press", "{ name: strain-stiffening, form: exponential, local_strain_square: \"0.25\", parameters: { c20_over_c10: { value: \"2\" } } }"),
+            with("tissue-block", "{ name: strain-stiffening, form: exponential, parameters: { c20_over_c10: { value: \"8\" } } }"));
+  EXPECT_EQ(with("spatula-press", "{ name: first-cycle-softening, form: exponential in the energy, local_strain_square: \"0.25\", parameters: { d: { value: \"0.4\" }, W0: { value: \"12 Pa\" } } }"),
+            with("tissue-block", "{ name: first-cycle-softening, form: exponential in the energy, parameters: { d: { value: \"0.4\" }, W0: { value: \"3 Pa\" } } }"));
 }
 
 TEST_F(MeasuredModelTest, TissueDrainsUnderARestingBlade) {
@@ -186,6 +201,13 @@ TEST_F(MeasuredModelTest, WhatASceneCannotShowIsRefusedByName) {
   EXPECT_NE(refused("press-to-target", file("spatula-press", "{}", stiffening)).find("strain-stiffening"), std::string::npos);  // by depth over height
   EXPECT_NE(refused("press-to-target", file("tissue-block", "{}", "\n  - { name: platen-friction, parameters: { friction_coefficient: { value: \"3\" } } }")).find("platen-friction"), std::string::npos);
   EXPECT_EQ(refused("press-to-target", file("spatula-press", "{}", "\n  - { name: strain-stiffening, on: false, parameters: { c20_over_c10: { value: \"3\" } } }")), "");
+  // all of them at once, each with its reason
+  const std::string many = refused("press-to-target", file("tissue-block", "{}", "\n  - { name: sensor-lag, parameters: { time_constant: { value: \"1 s\" } } }" + relaxing() + "  - { name: pulsation, parameters: {} }\n  - { name: contact-adhesion, parameters: {} }"));
+  for (const char* said : {"sensor-lag is the sensor's, and no scene has that sensor; with `on: false` the rest runs", "pulsation would take tissue that moves with heart and breath", "contact-adhesion would take blade contacts that pull"})
+    EXPECT_NE(many.find(said), std::string::npos) << many;
+  EXPECT_EQ(many.find("viscoelastic-relaxation"), std::string::npos) << many;
+  EXPECT_EQ(refused("press-to-target", file("tissue-block", "{}", "\n  - { name: sensor-lag, on: false, note: \"off: the sensor's\", parameters: { time_constant: { value: \"1 s\" } } }" + relaxing())), "");
+  EXPECT_NE(refused("press-to-target", file("needle-insertion", "{ stiffness: { value: \"80 N/m\" } }", "\n  - { name: shaft-friction, parameters: {} }")).find("shaft-friction is of a rig that no scene stands on"), std::string::npos);
   EXPECT_NE(refused("knot-throw", file("tissue-block", "{}", relaxing())).find("suture-cantilever"), std::string::npos);
   EXPECT_NE(refused("press-to-target", file("suture-pull", "{ friction_coefficient: { value: \"0.2\" } }", " []")).find("spatula-press"), std::string::npos);
   EXPECT_NE(refused("press-to-target", file("tissue-block", "{ youngs_modulus: { value: \"-1 Pa\" } }", " []")), "");
