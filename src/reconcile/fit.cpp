@@ -273,7 +273,7 @@ struct Fitter::Solver {
 };
 
 Fit Fitter::fit(const std::vector<const Form*>& forms, const std::vector<double>& base, const std::vector<std::vector<double>>& params,
-                const FitOptions& o, const Fit* warm) const {
+                const Effort& o, const Fit* warm) const {
   Fit f;
   f.forms = forms;
   f.base = base;

@@ -18,7 +18,7 @@ struct Noise {
   double gain_scatter = assumed::kGainScatter;  // of a record's output gain, and of an instrument's (contract: up to 1 %, evenly: 0.0058)
 };
 
-struct FitOptions {
+struct Effort {
   int iterations = 30;
   double tolerance = 1e-5;     // relative fall of chi2 at which it stops
 };
@@ -57,7 +57,7 @@ class Fitter {
 
   /// Fit from a starting point. An empty `params` takes the first start of each form.
   Fit fit(const std::vector<const Form*>& forms, const std::vector<double>& base, const std::vector<std::vector<double>>& params,
-          const FitOptions& options = {}, const Fit* warm = nullptr) const;
+          const Effort& options = {}, const Fit* warm = nullptr) const;
   /// Global parameters as they are; only the records' own scales are fitted. For held-out trials.
   Fit transfer(const Fit& fitted, const std::vector<bool>& trials) const;
 
