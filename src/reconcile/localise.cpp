@@ -3,14 +3,14 @@
 
 #include "reconcile/localise.h"
 
-#include <unsupported/Eigen/FFT>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <numbers>
 
+
+#include "reconcile/transform.h"
 
 namespace filum::reconcile {
 namespace {
@@ -125,13 +125,9 @@ std::pair<int, std::string> band_of(double f) {
 
 /// Periodogram of a residual over what the noise has there: mean 1, variance 1.
 void add_bands(const Eigen::VectorXd& r, const OutputNoise& noise, double step, Axis& axis) {
-  std::vector<double> x;
-  for (const double v : r) x.push_back(std::isfinite(v) ? v / noise.sigma : 0.0);
-  std::vector<std::complex<double>> out;
-  Eigen::FFT<double> fft;
-  fft.fwd(out, x);
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t k = 0; k < x.size() / 2; ++k) {
+  const auto out = transform(r / noise.sigma);
+  const auto n = static_cast<double>(out.size());
+  for (std::size_t k = 0; k < out.size() / 2; ++k) {
     const double f = static_cast<double>(k) / (n * step), colour = noise.spectrum(2.0 * std::numbers::pi * static_cast<double>(k) / n);
     Sum& s = axis[band_of(f)];
     s.excess += (k == 0 ? 1.0 : 2.0) * (std::norm(out[k]) / n - colour);

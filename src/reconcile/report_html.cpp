@@ -1,6 +1,4 @@
 #include <Eigen/Dense>
-#include <unsupported/Eigen/FFT>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -13,6 +11,7 @@
 #include "reconcile/plot.h"
 #include "reconcile/report.h"
 #include "reconcile/stages.h"
+#include "reconcile/transform.h"
 
 namespace filum::reconcile {
 namespace {
@@ -280,15 +279,13 @@ void tables(const Dataset& d, const Result& r, std::ostringstream& s) {
 /// Frequencies [Hz] up to half the sampling rate and log10 of the periodogram there; of many, each point is the strongest of its neighbours, so that no line is lost.
 std::pair<Eigen::VectorXd, Eigen::VectorXd> spectrum_of(const Eigen::VectorXd& v, double span) {
   constexpr Eigen::Index kPoints = 400;
-  std::vector<double> x;
-  for (const double one : v) x.push_back(std::isfinite(one) ? one : 0.0);
-  Eigen::FFT<double> fft;
-  std::vector<std::complex<double>> out;
-  fft.fwd(out, x);
-  const Eigen::Index all = std::max<Eigen::Index>(1, v.size() / 2 - 1), each = (all + kPoints - 1) / kPoints, points = (all + each - 1) / each;
+  const auto out = transform(v);
+  const auto n = static_cast<Eigen::Index>(out.size());
+  span *= static_cast<double>(n) / static_cast<double>(v.size());
+  const Eigen::Index all = std::max<Eigen::Index>(1, n / 2 - 1), each = (all + kPoints - 1) / kPoints, points = (all + each - 1) / each;
   Eigen::VectorXd f(points), p = Eigen::VectorXd::Constant(points, 1e-300);
   for (Eigen::Index k = 0; k < all; ++k) {
-    const double power = std::norm(out[static_cast<std::size_t>(k + 1)]) / static_cast<double>(v.size());
+    const double power = std::norm(out[static_cast<std::size_t>(k + 1)]) / static_cast<double>(n);
     if (k % each == 0 || power > p[k / each]) p[k / each] = std::max(power, 1e-300), f[k / each] = static_cast<double>(k + 1) / span;
   }
   return {f, p.array().log10()};

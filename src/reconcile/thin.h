@@ -1,0 +1,19 @@
+#pragma once
+// Records too long to be fitted in the time that a dataset may take are thinned before anything looks at them: every channel and the clock through the same
+// low-pass (a sinc under Kaiser's window, 60 dB; Oppenheim & Schafer 2010, ch. 7.5), then every m-th sample. What is slower than 0.4 of the new rate passes,
+// inputs and outputs stay in step, and a straight line stays itself up to the ends. Test: thin_test.
+
+#include "reconcile/dataset.h"
+
+namespace filum::reconcile {
+
+/// Samples that a dataset keeps, all trials together: more than the generator's largest (45,000) has.
+inline constexpr int kMostSamples = 60'000;
+
+/// One channel, every m-th sample of what the low-pass leaves. NaN where the samples that are there bear less than half of the filter's weight.
+Eigen::VectorXd thinned(const Eigen::VectorXd& v, int m);
+/// All trials by the same m, where they have more than `most` samples in all; the notices say so. What a channel states of its noise is that of a sample
+/// before: it is estimated anew.
+void thin(Dataset& d, int most = kMostSamples);
+
+}  // namespace filum::reconcile
