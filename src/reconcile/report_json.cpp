@@ -37,13 +37,6 @@ Json named(const std::vector<Effect>& effects) {
   return out;
 }
 
-/// A set in one text.
-std::string text_of(const std::vector<Effect>& effects) {
-  std::string out;
-  for (const Effect e : effects) out += (out.empty() ? "" : " + ") + info(e).name;
-  return out;
-}
-
 /// Evidence against the best set: 0 for the best, the more negative the worse.
 Json rivals_json(const Result& r) {
   double best = 0.0;
@@ -125,7 +118,7 @@ Json ambiguity_json(const Result& r) {
     Json one = Json::array();
     for (Eigen::Index j = 0; j < n; ++j) one.push_back(finite(r.decide.alike.correlation(i, j)));
     rows.push_back(std::move(one));
-    sets.push_back(text_of(r.decide.alike_sets[k]));
+    sets.push_back(named(r.decide.alike_sets[k]));
     masked.push_back(finite(r.decide.alike.masked[k]));
   }
   return {{"correlation", finite(r.decide.alike.correlation(0, 1))}, {"masked", finite(r.decide.alike.masked[0])}, {"sets", sets}, {"correlations", rows}, {"masked_each", masked}};
