@@ -6,17 +6,21 @@
 namespace filum::reconcile {
 namespace {
 
+/// True outputs, before the sensor; empty where the solver failed.
 std::vector<Eigen::MatrixXd> run_all(const Fitter& fitter, const FullSolver& solver, const Fit& f, bool fine, bool& good) {
   const Dataset& d = fitter.model().data();
   std::vector<Eigen::MatrixXd> out(d.trials.size());
   for (std::size_t i = 0; i < d.trials.size(); ++i) {
     if (!fitter.use[i]) continue;
-    const Setting s = fitter.setting(f, static_cast<int>(i));
-    good = good && solver.run(d.trials[i], s, fine, out[i]);
+    good = good && solver.run(d.trials[i], fitter.setting(f, static_cast<int>(i)), fine, out[i]) && out[i].allFinite();
     if (!good) return {};
-    fitter.model().sense(d.trials[i], s, out[i]);
-    if (!out[i].allFinite()) return good = false, std::vector<Eigen::MatrixXd>{};
   }
+  return out;
+}
+
+std::vector<Eigen::MatrixXd> sensed(const Fitter& fitter, const Fit& f, std::vector<Eigen::MatrixXd> out) {
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (out[i].size() > 0) fitter.model().sense(fitter.model().data().trials[i], fitter.setting(f, static_cast<int>(i)), out[i]);
   return out;
 }
 
@@ -48,8 +52,8 @@ FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& r
     std::vector<Eigen::MatrixXd> full = run_all(fitter, solver, out.fit, false, good), plain(d.trials.size());
     if (!good) return out.rounds = 0, out;
     for (std::size_t i = 0; i < full.size(); ++i)
-      if (fitter.use[i]) fitter.model().simulate(d.trials[i], fitter.setting(out.fit, static_cast<int>(i)), plain[i]);
-    if (round == 1) out.change = most(fitter, full, plain);
+      if (fitter.use[i]) fitter.model().rig(d.trials[i], fitter.setting(out.fit, static_cast<int>(i)), plain[i]);
+    if (round == 1) out.change = most(fitter, sensed(fitter, out.fit, full), sensed(fitter, out.fit, plain));
     for (std::size_t i = 0; i < full.size(); ++i)
       if (fitter.use[i]) full[i] -= plain[i];
     const double moved = out.correction.empty() ? 1.0 : most(fitter, full, out.correction);
@@ -63,7 +67,7 @@ FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& r
   if (!mesh) return out;
   bool good = true;
   const auto coarse = run_all(fitter, solver, out.fit, false, good), fine = run_all(fitter, solver, out.fit, true, good);
-  if (good) out.mesh = most(fitter, fine, scaled(coarse, fine));
+  if (good) out.mesh = most(fitter, sensed(fitter, out.fit, fine), sensed(fitter, out.fit, scaled(coarse, fine)));
   return out;
 }
 

@@ -50,7 +50,7 @@ class Fitter {
 
   /// Trials that take part; by default those that are not held out.
   std::vector<bool> use;
-  /// Added to what the rig's model predicts, trial by trial (confirm.h); empty: nothing.
+  /// Added to the rig's true outputs, before the sensor, trial by trial (confirm.h); empty: nothing.
   std::vector<Eigen::MatrixXd> correction;
   /// Steps of the differences over the usual ones, one for each global parameter (numerics.h); empty: 1.
   std::vector<double> steps;
