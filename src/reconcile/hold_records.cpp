@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "reconcile/hold_bands.h"
+#include "reconcile/thin.h"
 
 namespace filum::reconcile {
 
@@ -17,6 +18,7 @@ LintSummary lint_hold(const Dataset& d, const HoldLintOptions& options) {
     span = std::max(span, length);
   }
   if (rate < options.tremor_sampling) out.not_testable.push_back({Effect::physiological_tremor, "sampled more slowly than twice 12 Hz", info(Effect::physiological_tremor).shows});
+  if (hum_is_gone(d)) out.not_testable.push_back({Effect::mains_hum, "thinned behind a low-pass below 50 Hz", info(Effect::mains_hum).shows});
   if (span < options.pulsation_span) out.not_testable.push_back({Effect::pulsation, "records shorter than 5 s", info(Effect::pulsation).shows});
   return out;
 }

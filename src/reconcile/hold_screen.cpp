@@ -1,4 +1,5 @@
 #include "reconcile/hold_screen.h"
+#include "reconcile/thin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +75,7 @@ HoldScreenSummary screen_hold(const HoldRecords& records, const std::vector<Form
   for (const Form& f : forms)
     if (f.line && f.effect != Effect::mains_hum) add_line(records.fitter, records.fitted, f, f.params[0].low, f.params[0].high, records.all, options, out.found, &out.looked);
   for (const Form& f : forms)
-    if (f.effect == Effect::mains_hum) add_hum(records.fitter, records.fitted, f, records.all, options, out.found, &out.looked);
+    if (f.effect == Effect::mains_hum && !hum_is_gone(records.fitter.model().data())) add_hum(records.fitter, records.fitted, f, records.all, options, out.found, &out.looked);
   // heart and breath are one effect: the stronger gives the numbers
   std::stable_sort(out.found.begin(), out.found.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
   add_tremor(records, options, out);

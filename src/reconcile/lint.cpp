@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include "reconcile/thin.h"
+
 namespace filum::reconcile {
 namespace {
 
@@ -45,6 +47,7 @@ Reason clock_condition(const Dataset& d, Effect e, const LintOptions& options) {
   }
   if (e == Effect::pulsation && (rate < options.heart_sampling || span < options.heart_span)) return {"records too short or sampled too slowly for a heart beat", true};
   if (e == Effect::physiological_tremor && rate < options.tremor_sampling) return {"sampled more slowly than twice 8 Hz", true};
+  if (e == Effect::mains_hum && hum_is_gone(d)) return {"thinned behind a low-pass below 50 Hz", true};
   if (e == Effect::mains_hum && (rate < options.hum_sampling || span * rate < options.hum_samples)) return {"too few samples: sampled so slowly that 50 Hz folds onto anything", true};
   return {};
 }

@@ -10,10 +10,10 @@
 namespace filum::reconcile {
 namespace {
 
-constexpr double kPass = 0.45;   // of the new rate: half of the signal is left there, all of it below 0.4
-constexpr double kBeta = 5.65;   // Kaiser's window: 60 dB
+constexpr double kRollOff = 0.2;  // between 0.4 and 0.6 of the new rate
+constexpr double kBeta = 3.0;     // Kaiser's window
 constexpr int kLeast = 64;       // samples of a record that must be left
-constexpr int kLobes = 18;       // new samples to either side: a transition of 0.1 of the new rate
+constexpr int kLobes = 40;        // new samples to either side
 
 /// Kaiser's window needs the modified Bessel function I0, by its series.
 double bessel(double x) {
@@ -22,13 +22,23 @@ double bessel(double x) {
   return sum;
 }
 
+/// Response of the root-raised-cosine filter at x new samples from the middle; 0/0 in the middle and where 4 b x = 1.
+double root_raised_cosine(double x) {
+  using std::numbers::pi;
+  constexpr double b = kRollOff;
+  if (x < 1e-9) return 1.0 - b + 4.0 * b / pi;
+  const double pole = 1.0 - 16.0 * b * b * x * x;
+  if (std::abs(pole) < 1e-6) return b / std::numbers::sqrt2 * ((1.0 + 2.0 / pi) * std::sin(0.25 * pi / b) + (1.0 - 2.0 / pi) * std::cos(0.25 * pi / b));
+  return (std::sin(pi * x * (1.0 - b)) + 4.0 * b * x * std::cos(pi * x * (1.0 + b))) / (pi * x * pole);
+}
+
 /// Weights at 0, 1 ... samples from the middle.
 std::vector<double> low_pass(int m) {
   std::vector<double> out;
   const int reach = kLobes * m;
   for (int k = 0; k <= reach; ++k) {
-    const double x = 2.0 * std::numbers::pi * kPass * k / m, part = static_cast<double>(k) / (reach + 1);
-    out.push_back((k == 0 ? 1.0 : std::sin(x) / x) * bessel(kBeta * std::sqrt(1.0 - part * part)) / bessel(kBeta));
+    const double part = static_cast<double>(k) / (reach + 1);
+    out.push_back(root_raised_cosine(static_cast<double>(k) / m) * bessel(kBeta * std::sqrt(1.0 - part * part)) / bessel(kBeta));
   }
   return out;
 }
@@ -103,10 +113,17 @@ void thin(Dataset& d, int most) {
     if (t.samples() < kLeast * m) throw InputError(d.folder + "/" + t.file, "rows", std::to_string(t.samples()), "at least " + std::to_string(kLeast * m) + ", since records of so many samples in all are thinned to one in " + std::to_string(m));
     thin_trial(t, m);
   }
+  d.thinned = m;
   for (Channel& c : d.channels) c.noise = 0.0;
   char text[300];
-  std::snprintf(text, sizeof text, "%.0f samples in all are more than the %d that are fitted: every record was thinned to one in %d behind a low-pass; what is faster than 0.4 of the new rate is gone, and the noise of a sample is estimated anew", all, most, m);
+  std::snprintf(text, sizeof text, "%.0f samples in all are more than the %d that are fitted: every record was thinned to one in %d behind a low-pass; what is faster than 0.4 of the new rate is weakened, than 0.6 gone, and the noise of a sample is estimated anew", all, most, m);
   d.note(text);
+}
+
+bool hum_is_gone(const Dataset& d) {
+  double rate = 0.0;
+  for (const Trial& t : d.trials) rate = std::max(rate, (t.samples() - 1) / (t.time[t.samples() - 1] - t.time[0]));
+  return d.thinned > 1 && rate * 0.5 * (1.0 + kRollOff) < 49.0;
 }
 
 }  // namespace filum::reconcile
