@@ -51,10 +51,10 @@ Json rivals_json(const Result& r) {
 Json noise_json(const Dataset& d, const Result& r) {
   Json out = Json::object();
   for (std::size_t c = 0; c < d.outputs.size() && c < r.fit.noise.output.size(); ++c) {
-    std::string unit = "-";
+    const bool field = d.rig == Rig::spatula_press && d.outputs[c][0] == 'u';
+    std::string unit = field ? "m" : "-";
     for (const ChannelInfo& k : info(d.rig).channels)
-      if (k.name == d.outputs[c]) unit = k.unit;
-    if (d.rig == Rig::spatula_press && d.outputs[c][0] == 'u') unit = "m";
+      if (!field && k.name == d.outputs[c]) unit = k.unit;
     const OutputNoise& o = r.fit.noise.output[c];
     out[d.outputs[c]] = {{"value", o.sigma}, {"unit", unit}, {"from", o.from}, {"autocorrelation", (1.0 - o.white) * o.rho}, {"white", o.white}};
   }
