@@ -13,7 +13,7 @@
 namespace filum::reconcile {
 namespace {
 
-constexpr std::size_t kBlock = 20, kLeast = 30;  // samples
+constexpr std::size_t kBlockSamples = 20, kLeast = 30;  // samples
 constexpr double kAlike = 0.9999;  // correlation from which two terms are one: the simpler, which stands first, is kept
 
 struct Table {
@@ -120,7 +120,7 @@ std::vector<Eigen::Index> pursue(const Eigen::MatrixXd& A, const Eigen::VectorXd
 }
 
 std::vector<Term> stable_terms(const Table& t, const std::string& output, const DescribeOptions& options, Rng& rng) {
-  const auto n = static_cast<Eigen::Index>(t.y.size()), p = static_cast<Eigen::Index>(t.names.size()), block = static_cast<Eigen::Index>(kBlock);
+  const auto n = static_cast<Eigen::Index>(t.y.size()), p = static_cast<Eigen::Index>(t.names.size()), block = static_cast<Eigen::Index>(kBlockSamples);
   Eigen::MatrixXd X(n, p);
   for (Eigen::Index m = 0; m < p; ++m) X.col(m) = column(t.columns[static_cast<std::size_t>(m)]);
   const auto y = column(t.y);
