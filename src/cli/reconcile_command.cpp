@@ -16,10 +16,8 @@
 #include "base/error.h"
 #include "cli/options.h"
 #include "ranks/ranks.h"
-#include "reconcile/hardware.h"
 #include "reconcile/plugin.h"
 #include "reconcile/report.h"
-#include "reconcile/search.h"
 
 namespace filum {
 namespace {
@@ -47,12 +45,12 @@ reconcile::Result solve(const std::string& folder, const std::string& out, const
   reconcile::Result r = reconcile::reconcile(d, options);
   if (o.repeatable) r.seconds = std::numeric_limits<double>::quiet_NaN();
   if (progress) show_progress("done", 1.0, io);
-  reconcile::write_report(d, r, out, program_text());
+  reconcile::write_report(d, r, {out, program_text()});
   name = d.name;
   if (progress)
     for (const std::string& notice : d.notices) std::fprintf(io.err, "%s\n", notice.c_str());
   if (progress)
-    for (const reconcile::HardwareCheck& h : reconcile::check_units(d, r.baseline)) std::fprintf(io.err, "%s: %s\n", h.where.c_str(), h.found.c_str());
+    for (const reconcile::HardwareCheck& h : r.decide.units) std::fprintf(io.err, "%s: %s\n", h.where.c_str(), h.found.c_str());
   if (progress && o.json) print_json(io.out, reconcile::report_json(d, r));
   return r;
 }
@@ -61,10 +59,10 @@ int run_one(const ReconcileOptions& o, const Streams& io) {
   std::string name;
   const reconcile::Result r = solve(o.dataset, o.out, o, o.threads > 0 ? o.threads : 2, true, name, io);
   if (o.json) return kDone;
-  std::fprintf(io.out, "%s: %s%s", name.c_str(), r.verdict.c_str(), r.partial ? " (partial)" : "");
-  if (r.verdict == "effect")
-    for (const auto& e : r.effects) std::fprintf(io.out, " %s", reconcile::info(e.effect).name.c_str());
-  std::fprintf(io.out, "\n%s\ngap: fit %.3g -> %.3g, held out %.3g -> %.3g (noise = 1)\n%s/report.html, %.1f s\n", r.sentence.c_str(), r.fit.before, r.fit.after, r.held_out.before, r.held_out.after,
+  std::fprintf(io.out, "%s: %s%s", name.c_str(), r.decide.verdict.c_str(), r.decide.partial ? " (partial)" : "");
+  if (r.decide.verdict == "effect")
+    for (const auto& e : r.decide.effects) std::fprintf(io.out, " %s", reconcile::info(e.effect).name.c_str());
+  std::fprintf(io.out, "\n%s\ngap: fit %.3g -> %.3g, held out %.3g -> %.3g (noise = 1)\n%s/report.html, %.1f s\n", r.decide.sentence.c_str(), r.decide.gap.before, r.decide.gap.after, r.challenge.gap.before, r.challenge.gap.after,
               o.out.c_str(), r.seconds);
   return kDone;
 }
@@ -134,8 +132,8 @@ int run_all(const ReconcileOptions& o, const Streams& io) {
       std::string name, line;
       try {
         const auto r = solve((fs::path(o.all) / folder).string(), (fs::path(o.out) / folder).string(), o, 1, false, name, io);
-        line = name + ": " + r.verdict;
-        for (const auto& e : r.effects) line += " " + reconcile::info(e.effect).name;
+        line = name + ": " + r.decide.verdict;
+        for (const auto& e : r.decide.effects) line += " " + reconcile::info(e.effect).name;
       } catch (const std::exception& error) {
         ++bad;
         line = folder + ": refused: " + error.what();

@@ -83,8 +83,8 @@ void ReconcileJob::solve(std::string dataset) {
     options.progress = [&](const std::string& stage, double share) { set({"running", dataset, stage, "", share}); };
     options.cancelled = [this] { return cancelled_.load(); };
     const reconcile::Result r = reconcile::reconcile(d, options);
-    reconcile::write_report(d, r, (fs::path(reports_) / dataset).string(), program_text());
-    set({"done", dataset, "done", r.sentence, 1.0});
+    reconcile::write_report(d, r, {(fs::path(reports_) / dataset).string(), program_text()});
+    set({"done", dataset, "done", r.decide.sentence, 1.0});
   } catch (const reconcile::Cancelled&) {
     set({"cancelled", dataset, "", "Cancelled; nothing was written.", 0.0});
   } catch (const std::exception& error) {

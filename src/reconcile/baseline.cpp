@@ -1,8 +1,7 @@
 #include "reconcile/baseline.h"
 
 #include <algorithm>
-
-#include "reconcile/search.h"
+#include <set>
 
 namespace filum::reconcile {
 namespace {
@@ -34,7 +33,7 @@ std::vector<std::vector<double>> baseline_starts(const Fitter& fitter, const std
   return out;
 }
 
-Fit fit_baseline(const Fitter& fitter, const std::vector<double>& guess, const Fit* warm, int threads, const BaselineOptions& options, BaselineSummary& summary) {
+Fit best_start(const Fitter& fitter, const std::vector<double>& guess, const Fit* warm, int threads, const BaselineOptions& options, BaselineSummary& summary) {
   const auto starts = baseline_starts(fitter, guess, options);
   std::vector<Fit> fits(starts.size());
   Fitter alike(fitter);
@@ -50,6 +49,21 @@ Fit fit_baseline(const Fitter& fitter, const std::vector<double>& guess, const F
   for (std::size_t i = 0; i < fits.size() && !fitter.free_baseline().empty(); ++i)
     summary.starts.push_back({starts[i], fits[i].base, fits[i].chi2, fits[i].chi2 - best->chi2 <= std::max(options.same, options.share * best->chi2)});
   return *best;
+}
+
+BaselineSummary fit_baseline(Fitter& fitter, const NoiseSummary& measured, const BaselineOptions& options, const Run& run) {
+  const Dataset& d = fitter.model().data();
+  BaselineSummary out;
+  const Fit loose = best_start(fitter, fitter.model().guess(), &measured.loose, run.threads, options, out);
+  Noise noise = estimate_noise(fitter, loose);
+  noise.scatter = d.rig == Rig::forceps_bridge ? assumed::kScatterLow : replicate_scatter(d, loose);
+  // the geometric factor of a blade is an estimate: where two blades are compared it is free within reason
+  std::set<double> blades;
+  for (const Trial& t : d.trials) blades.insert(t.size("blade_width") * t.size("blade_length"));
+  if (blades.size() > 1) noise.scatter = std::max(noise.scatter, options.blade_scatter);
+  fitter.set_noise(std::move(noise));
+  out.fit = fitter.fit({}, loose.base, {}, {}, &loose);
+  return out;
 }
 
 }  // namespace filum::reconcile

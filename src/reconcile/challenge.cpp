@@ -88,13 +88,22 @@ Fit predicted(const Fitter& all, const Part& part, const Fit& start) {
   return all.transfer(fitted ? rest.fit(start.forms, start.base, start.params, {6, 1e-4}, &start) : start, part.trials);
 }
 
-}  // namespace
-
+/// Adds the squares of the residuals in units of the noise, and how many they are.
 void add_squares(const Noise& noise, const Fit& f, double& sum, int& n) {
   for (const auto& trial : f.residual)
     for (std::size_t c = 0; c < trial.size(); ++c)
       for (const double r : trial[c])
         if (std::isfinite(r)) sum += std::pow(r / noise.output[c].sigma, 2), ++n;
+}
+
+}  // namespace
+
+Gap gap_of(const Noise& noise, const Fit& before, const Fit& after) {
+  double sb = 0, sa = 0;
+  int n = 0, m = 0;
+  add_squares(noise, before, sb, n);
+  add_squares(noise, after, sa, m);
+  return {n > 0 ? std::sqrt(sb / n) : 0.0, m > 0 ? std::sqrt(sa / m) : 0.0};
 }
 
 double rate_of(const Dataset& d, const Trial& t) {
@@ -116,7 +125,7 @@ double rate_of(const Dataset& d, const Trial& t) {
   return *at;
 }
 
-std::vector<Part> parts_of(const Dataset& d, const Rules& rules) {
+std::vector<Part> parts_of(const Dataset& d, const ChallengeOptions& options) {
   std::vector<Part> out;
   Group marked(d.trials.size()), free(d.trials.size());
   bool any = false;
@@ -127,25 +136,26 @@ std::vector<Part> parts_of(const Dataset& d, const Rules& rules) {
     for (std::size_t i = 0; i < g.size(); ++i) free[i] = free[i] && !g[i];
     out.push_back({held, std::move(g), !any});
   };
-  on_purpose(fastest(d, rules.rate_apart), "the fastest rate");
+  on_purpose(fastest(d, options.rate_apart), "the fastest rate");
   on_purpose(other_size(d), "another size");
   if (any) return out;
-  const auto most = static_cast<std::size_t>(rules.folds);
+  const auto most = static_cast<std::size_t>(options.folds);
   for (Group& g : by_protocol(d, free, out.size() + 1 < most ? most - out.size() : 1)) out.push_back({"a protocol", std::move(g), true});
   return out;
 }
 
-Challenge challenge(const Search& search, const Fit& base, const Fit& named, const Options& options) {
-  const Fitter& all = search.fitter();
+ChallengeSummary challenge(const Candidates& sets, const Fit* winner, const ChallengeOptions& options, const Run& run) {
+  const Fitter& all = sets.fitter();
+  const Fit &base = sets.base(), &named = winner != nullptr ? *winner : base;
   const Dataset& d = all.model().data();
-  const auto parts = parts_of(d, options.rules);
+  const auto parts = parts_of(d, options);
   const bool marked = std::any_of(d.trials.begin(), d.trials.end(), [](const Trial& t) { return t.hold_out; });
-  Challenge out;
+  ChallengeSummary out;
   out.how = marked ? "trials marked hold_out" : parts.empty() ? "nothing can be held out" : turn(parts);
   std::vector<Fit> b(parts.size()), a(parts.size());
-  const bool same = &base == &named;  // nothing is named: one prediction serves as both
-  parallel(options.threads, (same ? 1 : 2) * parts.size(), [&](std::size_t k) {
-    stop_if_cancelled(options);
+  const bool same = winner == nullptr;  // nothing is named: one prediction serves as both
+  parallel(run.threads, (same ? 1 : 2) * parts.size(), [&](std::size_t k) {
+    stop_if_cancelled(run);
     const std::size_t i = k % parts.size();
     (k < parts.size() ? b : a)[i] = predicted(all, parts[i], k < parts.size() ? base : named);
   });
@@ -153,10 +163,10 @@ Challenge challenge(const Search& search, const Fit& base, const Fit& named, con
   double before = 0, after = 0, sb = 0, sa = 0;
   int n = 0, m = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    Fold fold{parts[i].held, files(d, parts[i].trials), gap_of(all.noise(), b[i], a[i]), b[i].chi2 / search.dispersion() - b[i].samples, a[i].chi2 / search.dispersion() - a[i].samples, b[i].samples, parts[i].counts, ""};
+    Fold fold{parts[i].held, files(d, parts[i].trials), gap_of(all.noise(), b[i], a[i]), b[i].chi2 / sets.dispersion() - b[i].samples, a[i].chi2 / sets.dispersion() - a[i].samples, b[i].samples, parts[i].counts, ""};
     if (!fold.counts) fold.why = "trials are marked hold_out: these alone decide";
     // a protocol without which the effect cannot be learnt says nothing about transfer
-    if (!marked && a[i].chi2 > options.rules.fold_unlearnt * b[i].chi2 && parts.size() > 2) fold.counts = false, fold.why = "the rest cannot teach the effect";
+    if (!marked && a[i].chi2 > options.unlearnt * b[i].chi2 && parts.size() > 2) fold.counts = false, fold.why = "the rest cannot teach the effect";
     out.folds.push_back(fold);
     if (!fold.counts) continue;
     before += fold.before;
@@ -167,7 +177,7 @@ Challenge challenge(const Search& search, const Fit& base, const Fit& named, con
   if (marked) out.before = b[0], out.after = a[0];
   if (n == 0) return out;
   out.gap = {std::sqrt(sb / n), std::sqrt(sa / m)};
-  out.done = before > options.rules.challenge * std::sqrt(2.0 * n);
+  out.done = before > options.judged * std::sqrt(2.0 * n);
   if (out.done) out.explained = 1.0 - std::max(0.0, after) / before;
   return out;
 }

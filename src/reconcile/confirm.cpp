@@ -1,5 +1,4 @@
 #include "reconcile/confirm.h"
-#include "reconcile/rules.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,17 +6,21 @@
 namespace filum::reconcile {
 namespace {
 
+/// True outputs, before the sensor; empty where the solver failed.
 std::vector<Eigen::MatrixXd> run_all(const Fitter& fitter, const FullSolver& solver, const Fit& f, bool fine, bool& good) {
   const Dataset& d = fitter.model().data();
   std::vector<Eigen::MatrixXd> out(d.trials.size());
   for (std::size_t i = 0; i < d.trials.size(); ++i) {
     if (!fitter.use[i]) continue;
-    const Setting s = fitter.setting(f, static_cast<int>(i));
-    good = good && solver.run(d.trials[i], s, fine, out[i]);
+    good = good && solver.run(d.trials[i], fitter.setting(f, static_cast<int>(i)), fine, out[i]) && out[i].allFinite();
     if (!good) return {};
-    fitter.model().sense(d.trials[i], s, out[i]);
-    if (!out[i].allFinite()) return good = false, std::vector<Eigen::MatrixXd>{};
   }
+  return out;
+}
+
+std::vector<Eigen::MatrixXd> sensed(const Fitter& fitter, const Fit& f, std::vector<Eigen::MatrixXd> out) {
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (out[i].size() > 0) fitter.model().sense(fitter.model().data().trials[i], fitter.setting(f, static_cast<int>(i)), out[i]);
   return out;
 }
 
@@ -41,16 +44,16 @@ std::vector<Eigen::MatrixXd> scaled(std::vector<Eigen::MatrixXd> a, const std::v
 
 }  // namespace
 
-FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& reduced, bool mesh) {
+FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& reduced, bool mesh, const ConfirmOptions& options) {
   FullFit out{reduced, {}, 0.0, 0.0, 0};
   const Dataset& d = fitter.model().data();
-  for (int round = 1; round <= assumed::kRounds; ++round) {
+  for (int round = 1; round <= options.rounds; ++round) {
     bool good = true;
     std::vector<Eigen::MatrixXd> full = run_all(fitter, solver, out.fit, false, good), plain(d.trials.size());
     if (!good) return out.rounds = 0, out;
     for (std::size_t i = 0; i < full.size(); ++i)
-      if (fitter.use[i]) fitter.model().simulate(d.trials[i], fitter.setting(out.fit, static_cast<int>(i)), plain[i]);
-    if (round == 1) out.change = most(fitter, full, plain);
+      if (fitter.use[i]) fitter.model().rig(d.trials[i], fitter.setting(out.fit, static_cast<int>(i)), plain[i]);
+    if (round == 1) out.change = most(fitter, sensed(fitter, out.fit, full), sensed(fitter, out.fit, plain));
     for (std::size_t i = 0; i < full.size(); ++i)
       if (fitter.use[i]) full[i] -= plain[i];
     const double moved = out.correction.empty() ? 1.0 : most(fitter, full, out.correction);
@@ -59,43 +62,44 @@ FullFit refit_fully(const Fitter& fitter, const FullSolver& solver, const Fit& r
     Fitter corrected(fitter);
     corrected.correction = out.correction;
     out.fit = corrected.fit(out.fit.forms, out.fit.base, out.fit.params, {10, 1e-6}, &out.fit);
-    if (moved < assumed::kRest) break;
+    if (moved < options.rest) break;
   }
   if (!mesh) return out;
   bool good = true;
   const auto coarse = run_all(fitter, solver, out.fit, false, good), fine = run_all(fitter, solver, out.fit, true, good);
-  if (good) out.mesh = most(fitter, fine, scaled(coarse, fine));
+  if (good) out.mesh = most(fitter, sensed(fitter, out.fit, fine), sensed(fitter, out.fit, scaled(coarse, fine)));
   return out;
 }
 
-bool confirm(const Search& search, const Fit& winner, const Options& options, Result& result) {
-  const Fitter& fitter = search.fitter();
+std::optional<ConfirmSummary> confirm(const Candidates& sets, const Fit* named, const ConfirmOptions& options, const Run& run) {
+  const Fitter& fitter = sets.fitter();
   const auto solver = make_full_solver(fitter.model());
-  if (solver == nullptr || !solver->needed(winner.forms)) return true;
-  if (options.progress) options.progress("re-simulation", 0.9);
-  stop_if_cancelled(options);
-  const FullFit base = refit_fully(fitter, *solver, search.base(), false);
-  stop_if_cancelled(options);
-  const FullFit full = refit_fully(fitter, *solver, winner, true);
-  Confirmation& c = result.confirmation.emplace();
+  if (named == nullptr || solver == nullptr || !solver->needed(named->forms)) return std::nullopt;
+  const Fit& winner = *named;
+  const CompareOptions& rules = sets.rules();
+  say(run, "re-simulation", 0.9);
+  const FullFit base = refit_fully(fitter, *solver, sets.base(), false, options);
+  stop_if_cancelled(run);
+  const FullFit full = refit_fully(fitter, *solver, winner, true, options);
+  ConfirmSummary c;
   c.solver = solver->name();
   c.ran = base.rounds > 0 && full.rounds > 0;
-  if (!c.ran) return true;
+  if (!c.ran) return c;
   c.difference = std::max(base.change, full.change);
   c.mesh = full.mesh;
-  c.evidence = search.bic(full.fit) - search.bic(base.fit);
+  c.evidence = sets.bic(full.fit) - sets.bic(base.fit);
   c.chi2_before = base.fit.chi2 / std::max(1, base.fit.samples);
   c.chi2_after = full.fit.chi2 / std::max(1, full.fit.samples);
-  const double gained = search.base().chi2 - winner.chi2;
+  const double gained = sets.base().chi2 - winner.chi2;
   c.share = gained > 0.0 ? (base.fit.chi2 - full.fit.chi2) / gained : 0.0;
   // what the solver's own mesh could account for is not worth a name
-  const double floor = std::max(1.0, c.mesh / options.rules.materiality);
-  c.material = search.material(full.fit, base.fit);
+  const double floor = std::max(1.0, c.mesh / rules.materiality);
+  c.material = sets.material(full.fit, base.fit);
   // a name that was taken by its chance (decide.cpp) has less evidence in either model: its share is what is asked
-  const bool by_chance = search.bic(winner) - search.bic(search.base()) > -options.rules.accept_evidence;
-  c.holds = (by_chance || c.evidence < -options.rules.accept_evidence) && c.share >= options.rules.explained && c.material >= floor;
-  c.values = effect_estimates(fitter, full.fit, search.dispersion());
-  return c.holds;
+  const bool by_chance = sets.bic(winner) - sets.bic(sets.base()) > -rules.accept_evidence;
+  c.holds = (by_chance || c.evidence < -rules.accept_evidence) && c.share >= rules.explained && c.material >= floor;
+  c.values = effect_estimates(fitter, full.fit, sets.dispersion());
+  return c;
 }
 
 }  // namespace filum::reconcile

@@ -14,6 +14,7 @@
 #include "base/yaml_file.h"
 #include "reconcile/csv_table.h"
 #include "reconcile/plausible.h"
+#include "reconcile/thin.h"
 #include "reconcile/video_trial.h"
 
 namespace filum::reconcile {
@@ -165,8 +166,8 @@ void check_time(const CsvTable& table, const std::string& column, const Eigen::V
     const std::string where = table.file + ":" + std::to_string(table.line[static_cast<std::size_t>(i)]);
     if (!std::isfinite(time[i])) throw InputError(where, "column " + column, "no time", "a time in every row");
     if (i > 0 && !(time[i] > time[i - 1])) {
-      const auto& row = table.rows[static_cast<std::size_t>(i)];
-      throw InputError(where, "column " + column, "\"" + row[static_cast<std::size_t>(table.column(column))] + "\"",
+      const std::string_view cell = table.cell(static_cast<std::size_t>(i), static_cast<std::size_t>(table.column(column)));
+      throw InputError(where, "column " + column, "\"" + std::string(cell) + "\"",
                        "a time later than that of the row before: time is strictly increasing");
     }
   }
@@ -209,7 +210,7 @@ CsvTable read_video_samples(Dataset& d, Trial& t, const VideoSetup& setup) {
     if (c.name == "time") check_time(table, c.column, v), t.time = std::move(v);
     else t.data[c.name] = std::move(v);
   }
-  if (!with_table) table.line.assign(static_cast<std::size_t>(t.time.size()), 0), table.rows.resize(table.line.size());
+  if (!with_table) table.line.assign(static_cast<std::size_t>(t.time.size()), 0);
   for (const Channel& c : d.channels) {
     if (!seen(c)) continue;
     t.data[c.name] = at_times(video.time, video.value.at(c.name), t.time);
@@ -237,7 +238,7 @@ CsvTable read_table_samples(Dataset& d, Trial& t, const std::string& path) {
     if (!used(h)) d.note(t.file + ": column \"" + h + "\" is not a channel and was ignored");
   if (t.time.size() == 0) {
     t.clocked = false;
-    t.time = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(table.rows.size()), 0.0, static_cast<double>(table.rows.size()) - 1.0);
+    t.time = Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(table.rows()), 0.0, static_cast<double>(table.rows()) - 1.0);
   }
   return table;
 }
@@ -313,6 +314,9 @@ void read_trial(const YamlNode& file, const YamlNode& node, Dataset& d, const Tr
   read_samples(d, t, setup);
   drop_rows_without_input(d, t);
   d.trials.push_back(std::move(t));
+  std::size_t all = 0;
+  for (const Trial& trial : d.trials) all += static_cast<std::size_t>(trial.samples());
+  if (all > CsvTable::kMostRows) throw InputError((fs::path(d.folder) / d.trials.back().file).string(), "rows", std::to_string(all) + " in all trials so far", "at most " + std::to_string(CsvTable::kMostRows) + " in all: fewer samples, or fewer trials");
 }
 
 void read_trials(const YamlNode& file, Dataset& d) {
@@ -383,6 +387,7 @@ Dataset load_dataset(const std::string& folder, const std::string& root) {
   read_model(file, d, root);
   read_channels(file, d);
   read_trials(file, d);
+  thin(d);
   file.finish();
   return d;
 }

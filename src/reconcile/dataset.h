@@ -55,6 +55,7 @@ struct Dataset {
   std::vector<std::string> outputs;       // names, in the order of the file
   std::vector<Trial> trials;
   std::vector<std::string> notices;
+  int thinned = 1;                        // samples that one stands for (thin.h)
   std::uint64_t hash = 0;
 
   /// Adds a notice, once.

@@ -1,20 +1,19 @@
 // What is not named, described: sparse regression of the residual on printable terms (orthogonal matching pursuit; Pati, Rezaiifar & Krishnaprasad 1993)
 // with stability over resampled blocks (Meinshausen & Buhlmann 2010).
 
+#include "reconcile/describe.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "base/rng.h"
-#include "reconcile/result.h"
-#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
 
-constexpr int kRounds = 30, kTerms = 3;
-constexpr std::size_t kBlock = 20, kLeast = 30;  // samples
+constexpr std::size_t kBlockSamples = 20, kLeast = 30;  // samples
 constexpr double kAlike = 0.9999;  // correlation from which two terms are one: the simpler, which stands first, is kept
 
 struct Table {
@@ -102,10 +101,10 @@ void drop_repeated(Table& t) {
 }
 
 /// The terms that explain most, one after the other, from the normal equations A b = c.
-std::vector<Eigen::Index> pursue(const Eigen::MatrixXd& A, const Eigen::VectorXd& c, Eigen::VectorXd& beta) {
+std::vector<Eigen::Index> pursue(const Eigen::MatrixXd& A, const Eigen::VectorXd& c, int terms, Eigen::VectorXd& beta) {
   std::vector<Eigen::Index> active;
   Eigen::VectorXd left = c;
-  for (int m = 0; m < kTerms; ++m) {
+  for (int m = 0; m < terms; ++m) {
     Eigen::Index best = -1;
     double most = 0.0;
     for (Eigen::Index j = 0; j < A.rows(); ++j) {
@@ -120,14 +119,14 @@ std::vector<Eigen::Index> pursue(const Eigen::MatrixXd& A, const Eigen::VectorXd
   return active;
 }
 
-std::vector<Term> stable_terms(const Table& t, const std::string& output, Rng& rng) {
-  const auto n = static_cast<Eigen::Index>(t.y.size()), p = static_cast<Eigen::Index>(t.names.size()), block = static_cast<Eigen::Index>(kBlock);
+std::vector<Term> stable_terms(const Table& t, const std::string& output, const DescribeOptions& options, Rng& rng) {
+  const auto n = static_cast<Eigen::Index>(t.y.size()), p = static_cast<Eigen::Index>(t.names.size()), block = static_cast<Eigen::Index>(kBlockSamples);
   Eigen::MatrixXd X(n, p);
   for (Eigen::Index m = 0; m < p; ++m) X.col(m) = column(t.columns[static_cast<std::size_t>(m)]);
   const auto y = column(t.y);
   std::map<Eigen::Index, int> chosen;
   std::map<Eigen::Index, double> coefficient;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < options.resamplings; ++round) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(p, p);
     Eigen::VectorXd c = Eigen::VectorXd::Zero(p), beta;
     for (Eigen::Index k = 0; k < n; k += block) {
@@ -136,19 +135,19 @@ std::vector<Term> stable_terms(const Table& t, const std::string& output, Rng& r
       A.noalias() += B.transpose() * B;
       c.noalias() += B.transpose() * y.segment(start, block);
     }
-    const auto active = pursue(A, c, beta);
+    const auto active = pursue(A, c, options.terms, beta);
     for (std::size_t m = 0; m < active.size(); ++m) ++chosen[active[m]], coefficient[active[m]] += beta[static_cast<Eigen::Index>(m)];
   }
   std::vector<Term> out;
   for (const auto& [j, count] : chosen)
-    if (count >= assumed::kResampled * kRounds) out.push_back({t.names[static_cast<std::size_t>(j)], coefficient[j] / count, static_cast<double>(count) / kRounds, output});
+    if (count >= options.chosen * options.resamplings) out.push_back({t.names[static_cast<std::size_t>(j)], coefficient[j] / count, static_cast<double>(count) / options.resamplings, output});
   std::stable_sort(out.begin(), out.end(), [](const Term& a, const Term& b) { return a.stability > b.stability; });
   return out;
 }
 
 }  // namespace
 
-std::vector<Term> describe(const RigModel& model, const Fit& fit, const Noise& noise) {
+std::vector<Term> describe(const RigModel& model, const Fit& fit, const Noise& noise, const DescribeOptions& options) {
   const Dataset& d = model.data();
   const auto inputs = inputs_of(d);
   if (inputs.empty()) return {};
@@ -159,7 +158,7 @@ std::vector<Term> describe(const RigModel& model, const Fit& fit, const Noise& n
     if (t.y.size() < kLeast) continue;
     drop_repeated(t);
     const double left = column(t.y).norm() / std::sqrt(static_cast<double>(t.y.size())) * model.full_scale(d.outputs[c]) / noise.output[c].sigma;
-    all.emplace_back(left, stable_terms(t, d.outputs[c], rng));
+    all.emplace_back(left, stable_terms(t, d.outputs[c], options, rng));
   }
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Term> out;

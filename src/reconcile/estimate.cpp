@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reconcile/result.h"
+#include "reconcile/estimate.h"
 #include "reconcile/rules.h"
 
 namespace filum::reconcile {

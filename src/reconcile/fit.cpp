@@ -85,8 +85,9 @@ Eigen::VectorXd Fitter::residual(int trial, const Setting& s, std::vector<Eigen:
   const Dataset& d = model_.data();
   const Trial& t = d.trials[static_cast<std::size_t>(trial)];
   Eigen::MatrixXd out;
-  model_.simulate(t, s, out);
+  model_.rig(t, s, out);
   if (!correction.empty() && correction[static_cast<std::size_t>(trial)].size() > 0) out += correction[static_cast<std::size_t>(trial)];
+  model_.sense(t, s, out);
   const Eigen::MatrixXd columns = model_.free_columns(t, s);
   const auto& valid = valid_[static_cast<std::size_t>(trial)];
   Eigen::Index total = 0;
@@ -273,7 +274,7 @@ struct Fitter::Solver {
 };
 
 Fit Fitter::fit(const std::vector<const Form*>& forms, const std::vector<double>& base, const std::vector<std::vector<double>>& params,
-                const FitOptions& o, const Fit* warm) const {
+                const Effort& o, const Fit* warm) const {
   Fit f;
   f.forms = forms;
   f.base = base;

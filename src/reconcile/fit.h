@@ -18,7 +18,7 @@ struct Noise {
   double gain_scatter = assumed::kGainScatter;  // of a record's output gain, and of an instrument's (contract: up to 1 %, evenly: 0.0058)
 };
 
-struct FitOptions {
+struct Effort {
   int iterations = 30;
   double tolerance = 1e-5;     // relative fall of chi2 at which it stops
 };
@@ -50,14 +50,14 @@ class Fitter {
 
   /// Trials that take part; by default those that are not held out.
   std::vector<bool> use;
-  /// Added to what the rig's model predicts, trial by trial (confirm.h); empty: nothing.
+  /// Added to the rig's true outputs, before the sensor, trial by trial (confirm.h); empty: nothing.
   std::vector<Eigen::MatrixXd> correction;
   /// Steps of the differences over the usual ones, one for each global parameter (numerics.h); empty: 1.
   std::vector<double> steps;
 
   /// Fit from a starting point. An empty `params` takes the first start of each form.
   Fit fit(const std::vector<const Form*>& forms, const std::vector<double>& base, const std::vector<std::vector<double>>& params,
-          const FitOptions& options = {}, const Fit* warm = nullptr) const;
+          const Effort& options = {}, const Fit* warm = nullptr) const;
   /// Global parameters as they are; only the records' own scales are fitted. For held-out trials.
   Fit transfer(const Fit& fitted, const std::vector<bool>& trials) const;
 

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "reconcile/model.h"
-#include "reconcile/result.h"
+#include "reconcile/estimate.h"
 
 namespace filum::reconcile {
 namespace {

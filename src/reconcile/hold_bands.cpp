@@ -43,9 +43,9 @@ Band tremor_band(const std::vector<Spectrum>& all) {
   return best;
 }
 
-void add_line(const Fitter& fitter, const Fit& base, const Form& form, double low, double high, const std::vector<Spectrum>& all, std::vector<Found>& found, std::vector<Screened>* looked) {
+void add_line(const Fitter& fitter, const Fit& base, const Form& form, double low, double high, const std::vector<Spectrum>& all, const HoldScreenOptions& options, std::vector<Found>& found, std::vector<Screened>* looked) {
   const Line line = strongest_line(fitter, base, low, high);
-  const double needed = line.columns + kHoldRules.line_spread * std::sqrt(2.0 * line.columns) + kHoldRules.line_gain;
+  const double needed = line.columns + options.line_spread * std::sqrt(2.0 * line.columns) + options.line_gain;
   const auto say = [&](const std::string& what) {
     if (looked != nullptr) looked->push_back({form.effect, form.text, line.gain, NAN, what});
   };
@@ -58,7 +58,7 @@ void add_line(const Fitter& fitter, const Fit& base, const Form& form, double lo
   if (at > 0.5 * rate) at = rate - at;
   const double around = level(all, std::max(0.05, at - 12 * w), at + 12 * w);
   const Band narrow = band(all, at - w, at + w, around), wide = band(all, std::max(0.0, at - 10 * w), at + 10 * w, around);
-  if (narrow.excess < kHoldRules.line_share * wide.excess) return say("not fitted: what stands out is a band, not a line");
+  if (narrow.excess < options.line_share * wide.excess) return say("not fitted: what stands out is a band, not a line");
   say("fitted");
   found.push_back({form.effect, &form, at - w, at + w, line.frequency, squared_rms(all, at - w, at + w, around), line.gain, narrow.bins});
 }
@@ -83,12 +83,12 @@ Fit without_lines(const Dataset& d, const Fit& base, const std::vector<Found>& f
   return out;
 }
 
-void add_hum(const Fitter& fitter, const Fit& base, const Form& form, const std::vector<Spectrum>& all, std::vector<Found>& found, std::vector<Screened>* looked) {
+void add_hum(const Fitter& fitter, const Fit& base, const Form& form, const std::vector<Spectrum>& all, const HoldScreenOptions& options, std::vector<Found>& found, std::vector<Screened>* looked) {
   std::vector<Found> both;
   std::vector<Screened> own;
   const auto look = [&](const Fit& in) {
     both.clear(), own.clear();
-    for (const double f : {50.0, 60.0}) add_line(fitter, in, form, f - 0.2, f + 0.2, all, both, &own);
+    for (const double f : {50.0, 60.0}) add_line(fitter, in, form, f - 0.2, f + 0.2, all, options, both, &own);
     std::stable_sort(both.begin(), both.end(), [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
   };
   look(base);

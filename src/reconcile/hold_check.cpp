@@ -11,8 +11,6 @@
 namespace filum::reconcile {
 namespace {
 
-constexpr int kRepetitions = 500;
-
 /// Residuals of one record's outputs over their noise, with the clock; NaN where a sample is missing.
 struct Record {
   const Trial* trial = nullptr;
@@ -191,32 +189,35 @@ std::vector<Found> placed(const Half& half, const std::vector<Found>& found) {
 
 }  // namespace
 
-Detection detect_hold(const Dataset& d, const Fit& fitted, const Noise& noise, const std::vector<double>& stated, const Options& options) {
-  Detection out;
-  const std::vector<Record> seen = records_of(d, fitted, noise);
+DetectSummary detect_hold(const HoldRecords& records, const HoldDetectOptions& options, const Run& run) {
+  const Dataset& d = records.fitter.model().data();
+  const Noise& noise = records.fitter.noise();
+  const auto repetitions = static_cast<std::size_t>(options.repetitions);
+  DetectSummary out;
+  const std::vector<Record> seen = records_of(d, records.fitted, noise);
   const Window window = window_of(seen);
   out.statistic = window.value;
   std::vector<Spectrum> own;
   for (const Record& r : seen) own.insert(own.end(), r.seen.begin(), r.seen.end());
-  out.score = best_band(own, stated);
+  out.score = best_band(own, records.stated);
   out.score_is = "largest rise of twice the log likelihood over an octave, the tremor's band or a line of heart, breath or mains";
-  out.repetitions = kRepetitions;
-  out.null_scores.resize(kRepetitions);
-  std::vector<double> windows(kRepetitions);
-  parallel(options.threads, kRepetitions, [&](std::size_t k) {
-    if (options.cancelled && options.cancelled()) return;
+  out.repetitions = options.repetitions;
+  out.null_scores.resize(repetitions);
+  std::vector<double> windows(repetitions);
+  parallel(run.threads, repetitions, [&](std::size_t k) {
+    stop_if_cancelled(run);
     Rng rng(20261123 + k);
-    out.null_scores[k] = best_band(drawn(seen, rng), stated);
+    out.null_scores[k] = best_band(drawn(seen, rng), records.stated);
     windows[k] = window_of(repetition(seen, rng)).value;
   });
   const auto above = [](const std::vector<double>& all, double v) { return std::count_if(all.begin(), all.end(), [&](double x) { return x >= v; }); };
   const auto scores = above(out.null_scores, out.score);
-  out.p = std::min(1.0, 2.0 * (1.0 + static_cast<double>(std::min(above(windows, out.statistic), scores))) / (1.0 + kRepetitions));
-  out.chance = (1.0 + static_cast<double>(scores)) / (1.0 + kRepetitions);
+  out.p = std::min(1.0, 2.0 * (1.0 + static_cast<double>(std::min(above(windows, out.statistic), scores))) / (1.0 + options.repetitions));
+  out.chance = (1.0 + static_cast<double>(scores)) / (1.0 + options.repetitions);
   std::sort(out.null_scores.begin(), out.null_scores.end());
   double sum = 0.0;
   int n = 0;
-  for (const auto& trial : fitted.residual)
+  for (const auto& trial : records.fitted.residual)
     for (std::size_t c = 0; c < trial.size(); ++c)
       for (const double r : trial[c])
         if (std::isfinite(r)) sum += (r * r - std::pow(noise.output[c].sigma, 2)) / std::pow(noise.output[c].full_scale, 2), ++n;
@@ -228,23 +229,44 @@ Detection detect_hold(const Dataset& d, const Fit& fitted, const Noise& noise, c
   return out;
 }
 
-std::optional<Gap> gap_of_halves(const Dataset& d, const Noise& noise, const std::vector<Found>& found) {
+namespace {
+
+/// nullopt where a half has too few samples.
+std::optional<Gap> gap_of_halves(const Dataset& d, const Noise& noise, const std::vector<Found>& found, int least) {
   for (const Trial& t : d.trials)
-    if (t.samples() < 256) return std::nullopt;
+    if (t.samples() < least) return std::nullopt;
   const Half first(d, false, noise), second(d, true, noise);
   const Gap a = gap_in(second.all, placed(first, found)), b = gap_in(first.all, placed(second, found));
   const auto mean = [](double x, double y) { return std::sqrt(0.5 * (x * x + y * y)); };
   return Gap{mean(a.before, b.before), mean(a.after, b.after)};
 }
 
-std::vector<Screened> screened_hold(const Result& r, const std::vector<Screened>& looked) {
+}  // namespace
+
+ChallengeSummary challenge_hold(const HoldRecords& records, const std::vector<Found>& found, const HoldChallengeOptions& options) {
+  const Dataset& d = records.fitter.model().data();
+  ChallengeSummary out;
+  if (!records.held.empty()) {
+    out.gap = gap_in(records.held, found);
+    out.how = "trials marked hold_out";
+  } else if (const auto halves = gap_of_halves(d, records.fitter.noise(), found, options.samples)) {
+    out.gap = *halves;
+    out.how = "no trial is held out: the places of what is named are taken from one half of every record and judged in the other, both ways (the names are from the whole)";
+  } else {
+    out.gap = gap_in(records.all, found);
+    out.how = "no trial is held out, and half a record is too short: the same bands on the fitted ones";
+  }
+  return out;
+}
+
+std::vector<Screened> screened_hold(const LintSummary& lint, const std::vector<Screened>& looked) {
   std::vector<Screened> out;
   for (const Effect effect : effects_of(Rig::tip_hold)) {
     Screened s{effect, "", NAN, NAN, ""};
     for (const Screened& x : looked)
       if (x.effect == effect && (std::isnan(s.gain) || x.what == "fitted" || (x.gain > s.gain && s.what != "fitted"))) s = x;
-    const auto hidden = std::find_if(r.not_testable.begin(), r.not_testable.end(), [&](const NotTestable& n) { return n.effect == effect; });
-    if (s.what.empty()) s.what = hidden != r.not_testable.end() ? "these trials could not show it: " + hidden->why : "not looked for";
+    const auto hidden = std::find_if(lint.not_testable.begin(), lint.not_testable.end(), [&](const NotTestable& n) { return n.effect == effect; });
+    if (s.what.empty()) s.what = hidden != lint.not_testable.end() ? "these trials could not show it: " + hidden->why : "not looked for";
     out.push_back(std::move(s));
   }
   std::stable_sort(out.begin(), out.end(), [](const Screened& a, const Screened& b) { return a.gain > b.gain || (!std::isnan(a.gain) && std::isnan(b.gain)); });

@@ -1,27 +1,22 @@
 #include "reconcile/hold_spectrum.h"
 
-#include <unsupported/Eigen/FFT>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
 #include "reconcile/model.h"
+#include "reconcile/transform.h"
 
 namespace filum::reconcile {
 
 Spectrum spectrum(const Eigen::VectorXd& residual, const Eigen::VectorXd& time, double sigma) {
   Spectrum s;
-  std::vector<double> x;
-  for (const double v : residual) x.push_back(std::isfinite(v) ? v : 0.0);
-  const auto n = x.size();
+  const auto out = transform(residual);
+  const auto n = out.size();
   s.n = static_cast<int>(n);
-  const double span = (time[time.size() - 1] - time[0]) * static_cast<double>(n) / static_cast<double>(n - 1);
+  const double span = (time[static_cast<Eigen::Index>(n) - 1] - time[0]) * static_cast<double>(n) / static_cast<double>(n - 1);
   s.step = 1.0 / span;
   s.rate = static_cast<double>(n) / span;
-  Eigen::FFT<double> fft;
-  std::vector<std::complex<double>> out;
-  fft.fwd(out, x);
   std::vector<double> quiet;
   for (std::size_t k = 1; k < n / 2; ++k) {
     s.frequency.push_back(static_cast<double>(k) / span);

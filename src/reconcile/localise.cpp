@@ -1,7 +1,7 @@
 // Where the baseline misses: the residual's squares over the noise's variance, less one, summed over cells. What noise alone would make of a sum is known
 // (variance 2 a sample, (1 + rho^2)/(1 - rho^2) times as much where neighbours are correlated), so each cell says how far it stands out.
 
-#include <unsupported/Eigen/FFT>
+#include "reconcile/localise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,8 @@
 #include <map>
 #include <numbers>
 
-#include "reconcile/result.h"
+
+#include "reconcile/transform.h"
 
 namespace filum::reconcile {
 namespace {
@@ -28,7 +29,7 @@ std::string first_input(const Dataset& d) {
 }
 
 template <class... A>
-std::string text(const char* format, A... values) {
+std::string range_text(const char* format, A... values) {
   char out[80];
   std::snprintf(out, sizeof out, format, values...);
   return out;
@@ -48,7 +49,7 @@ std::vector<std::string> phases(const Trial& t, const Eigen::VectorXd& x) {
 }
 
 /// Rate of the input, over four samples to either side.
-Eigen::VectorXd rate_of(const Trial& t, const Eigen::VectorXd& x) {
+Eigen::VectorXd rates_of(const Trial& t, const Eigen::VectorXd& x) {
   const Eigen::Index n = x.size();
   Eigen::VectorXd v(n);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -79,22 +80,25 @@ struct Bins {
   double low = INFINITY, high = -INFINITY, fastest = 0.0;  // in `unit`
   double scale = 1.0;                                      // SI of one unit
   bool strain = false;
+  int parts = 4;                                           // of its range
 
   double of(const Trial& t, double x) const { return strain ? x / t.size("height", 1.0) : x / scale; }
   std::pair<int, std::string> value(double v) const {
-    const int k = std::clamp(static_cast<int>(4.0 * (v - low) / (high - low)), 0, 3);
-    return {k, text("%.3g to %.3g%s", low + 0.25 * k * (high - low), low + 0.25 * (k + 1) * (high - low), unit.c_str())};
+    const int k = std::clamp(static_cast<int>(parts * (v - low) / (high - low)), 0, parts - 1);
+    const double part = (high - low) / parts;
+    return {k, range_text("%.3g to %.3g%s", low + k * part, low + (k + 1) * part, unit.c_str())};
   }
   std::pair<int, std::string> rate(double v) const {
     const double parts[] = {0.02, 0.1, 0.3, 1.0};
     for (int k = 0; k < 3; ++k)
-      if (v < parts[k] * fastest) return {k, text("below %.2g%s/s", parts[k] * fastest, unit.c_str())};
-    return {3, text("faster than %.2g%s/s", parts[2] * fastest, unit.c_str())};
+      if (v < parts[k] * fastest) return {k, range_text("below %.2g%s/s", parts[k] * fastest, unit.c_str())};
+    return {3, range_text("faster than %.2g%s/s", parts[2] * fastest, unit.c_str())};
   }
 };
 
-Bins bins_of(const Dataset& d, const std::string& input) {
+Bins bins_of(const Dataset& d, const std::string& input, int parts) {
   Bins b;
+  b.parts = parts;
   const Channel& c = d.channel(input);
   b.strain = (d.rig == Rig::tissue_block || d.rig == Rig::spatula_press);
   b.name = b.strain ? "strain" : input;
@@ -104,7 +108,7 @@ Bins bins_of(const Dataset& d, const std::string& input) {
   for (const Trial& t : d.trials)
     for (Eigen::Index k = 0; k < t.time.size(); ++k) b.low = std::min(b.low, b.of(t, t.at(input)[k])), b.high = std::max(b.high, b.of(t, t.at(input)[k]));
   for (const Trial& t : d.trials)
-    for (const double v : rate_of(t, t.at(input))) rates.push_back(b.of(t, v));
+    for (const double v : rates_of(t, t.at(input))) rates.push_back(b.of(t, v));
   const auto top = rates.begin() + static_cast<std::ptrdiff_t>(rates.size() * 98 / 100);
   std::nth_element(rates.begin(), top, rates.end());
   b.fastest = *top;
@@ -116,18 +120,14 @@ constexpr double kEdges[] = {0.1, 0.5, 3.0, 8.0, 12.0};  // [Hz], reference/disc
 std::pair<int, std::string> band_of(double f) {
   int k = 0;
   while (k < 5 && f >= kEdges[k]) ++k;
-  return {k, k == 0 ? "below 0.1 Hz" : k == 5 ? "above 12 Hz" : text("%.2g to %.2g Hz", kEdges[k - 1], kEdges[k])};
+  return {k, k == 0 ? "below 0.1 Hz" : k == 5 ? "above 12 Hz" : range_text("%.2g to %.2g Hz", kEdges[k - 1], kEdges[k])};
 }
 
 /// Periodogram of a residual over what the noise has there: mean 1, variance 1.
 void add_bands(const Eigen::VectorXd& r, const OutputNoise& noise, double step, Axis& axis) {
-  std::vector<double> x;
-  for (const double v : r) x.push_back(std::isfinite(v) ? v / noise.sigma : 0.0);
-  std::vector<std::complex<double>> out;
-  Eigen::FFT<double> fft;
-  fft.fwd(out, x);
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t k = 0; k < x.size() / 2; ++k) {
+  const auto out = transform(r / noise.sigma);
+  const auto n = static_cast<double>(out.size());
+  for (std::size_t k = 0; k < out.size() / 2; ++k) {
     const double f = static_cast<double>(k) / (n * step), colour = noise.spectrum(2.0 * std::numbers::pi * static_cast<double>(k) / n);
     Sum& s = axis[band_of(f)];
     s.excess += (k == 0 ? 1.0 : 2.0) * (std::norm(out[k]) / n - colour);
@@ -149,15 +149,15 @@ void add_shares(const std::string& name, const Axis& axis, std::vector<Share>& o
 
 }  // namespace
 
-std::vector<Share> localise_by(const RigModel& model, const Fit& base, const Noise& noise) {
+std::vector<Share> shares_of(const RigModel& model, const Fit& base, const Noise& noise, const LocaliseOptions& options) {
   const Dataset& d = model.data();
   const std::string input = first_input(d);
-  const Bins bins = input.empty() ? Bins{} : bins_of(d, input);
+  const Bins bins = input.empty() ? Bins{} : bins_of(d, input, options.parts);
   Axis trial, output, phase, value, rate, cycle, band;
   for (std::size_t i = 0; i < base.residual.size(); ++i) {
     if (base.residual[i].empty()) continue;
     const Trial& t = d.trials[i];
-    const Eigen::VectorXd x = input.empty() ? Eigen::VectorXd::Zero(t.samples()) : t.at(input), v = rate_of(t, x);
+    const Eigen::VectorXd x = input.empty() ? Eigen::VectorXd::Zero(t.samples()) : t.at(input), v = rates_of(t, x);
     const auto what = phases(t, x);
     const auto turn = cycles(x);
     for (std::size_t c = 0; c < base.residual[i].size(); ++c) {
@@ -187,7 +187,7 @@ std::vector<Share> localise_by(const RigModel& model, const Fit& base, const Noi
   return out;
 }
 
-std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& noise) {
+std::vector<Cell> cells_of(const RigModel& model, const Fit& base, const Noise& noise, const LocaliseOptions& options) {
   const Dataset& d = model.data();
   const std::string input = first_input(d);
   std::vector<Cell> cells;
@@ -195,23 +195,27 @@ std::vector<Cell> localise(const RigModel& model, const Fit& base, const Noise& 
   for (std::size_t i = 0; i < base.residual.size(); ++i) {
     if (base.residual[i].empty()) continue;
     const Trial& t = d.trials[i];
-    const double t0 = t.time[0], span = t.time[t.samples() - 1] - t0;
+    const double t0 = t.time[0], span = t.time[t.samples() - 1] - t0, part = span / options.parts;
     const auto what = input.empty() ? std::vector<std::string>(static_cast<std::size_t>(t.samples()), "hold") : phases(t, t.at(input));
     std::map<std::pair<std::string, int>, double> excess;
     for (int k = 0; k < t.samples(); ++k)
       for (std::size_t c = 0; c < base.residual[i].size(); ++c) {
         const double r = base.residual[i][c][k];
-        if (std::isfinite(r)) excess[{what[static_cast<std::size_t>(k)], std::min(3, static_cast<int>(4.0 * (t.time[k] - t0) / span))}] += std::pow(r / noise.output[c].sigma, 2) - 1.0;
+        if (std::isfinite(r)) excess[{what[static_cast<std::size_t>(k)], std::min(options.parts - 1, static_cast<int>(options.parts * (t.time[k] - t0) / span))}] += std::pow(r / noise.output[c].sigma, 2) - 1.0;
       }
     for (const auto& [key, value] : excess) {
       if (value <= 0) continue;
-      cells.push_back({t.file, key.first, text("%.4g s <= t <= %.4g s", t0 + 0.25 * key.second * span, t0 + 0.25 * (key.second + 1) * span), value});
+      cells.push_back({t.file, key.first, range_text("%.4g s <= t <= %.4g s", t0 + key.second * part, t0 + (key.second + 1) * part), value});
       total += value;
     }
   }
   std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.share > b.share; });
   for (Cell& c : cells) c.share /= total;
   return cells;
+}
+
+LocaliseSummary localise(const RigModel& model, const Fit& base, const Noise& noise, const LocaliseOptions& options) {
+  return {cells_of(model, base, noise, options), shares_of(model, base, noise, options)};
 }
 
 }  // namespace filum::reconcile

@@ -27,9 +27,9 @@ bool by_strain(Effect e) { return e == Effect::strain_stiffening || e == Effect:
 /// and softening are those of its elements.
 const NamedEffect& as_run(const NamedEffect& e, const Dataset& d, const Result& r) {
   const bool meshed = e.effect == Effect::poroelastic_drainage || (d.rig == Rig::spatula_press && by_strain(e.effect));
-  if (!meshed || !r.confirmation || !r.confirmation->holds) return e;
-  const auto at = std::find_if(r.confirmation->values.begin(), r.confirmation->values.end(), [&](const NamedEffect& v) { return v.effect == e.effect; });
-  return at == r.confirmation->values.end() ? e : *at;
+  if (!meshed || !r.confirm || !r.confirm->holds) return e;
+  const auto at = std::find_if(r.confirm->values.begin(), r.confirm->values.end(), [&](const NamedEffect& v) { return v.effect == e.effect; });
+  return at == r.confirm->values.end() ? e : *at;
 }
 
 /// A relaxation that is not made of exponentials, as the sum of them that a scene can run.
@@ -67,7 +67,7 @@ std::string of_the_laboratory(Effect e) {
 std::string local_strain(const Dataset& d, const Result& r, Effect e) {
   if (d.rig != Rig::spatula_press || !by_strain(e)) return "";
   double nu = d.nominal.count("poissons_ratio") > 0 ? d.nominal.at("poissons_ratio") : 0.49;
-  for (const Estimate& p : r.baseline)
+  for (const Estimate& p : r.decide.baseline)
     if (p.name == "poissons_ratio") nu = p.value;
   const Trial& t = d.trials[0];
   const Vec3 box(t.size("length"), t.size("width"), t.size("height"));
@@ -94,10 +94,10 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
   };
   s << "# Baseline with what the measurements showed to be missing. Values with their 95 % intervals.\n"
     << "format: filum-model/1\ntitle: " << quoted(d.name) << "\nrig: " << info(d.rig).name << "\nbaseline_model: " << d.model << "\nbaseline:\n";
-  for (const Estimate& e : r.baseline) value(e, "  ");
-  if (r.baseline.empty()) s << "  {}\n";
+  for (const Estimate& e : r.decide.baseline) value(e, "  ");
+  if (r.decide.baseline.empty()) s << "  {}\n";
   s << "effects:\n";
-  for (const NamedEffect& named : r.effects) {
+  for (const NamedEffect& named : r.decide.effects) {
     const NamedEffect& e = as_run(named, d, r);
     const std::string off = d.rig == Rig::forceps_bridge || d.rig == Rig::tip_hold ? "" : of_the_laboratory(e.effect);
     s << "  - name: " << info(e.effect).name << "\n    on: " << (off.empty() ? "true" : "false") << "\n" << (off.empty() ? "" : "    note: \"" + off + "\"\n") << "    form: \"" << e.form << "\"\n"
@@ -105,7 +105,7 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
     for (const Estimate& p : e.parameters) value(p, "      ");
     s << spectrum_text(e);
   }
-  s << "partial: " << (r.partial ? "true" : "false") << "\nvalid_for:\n";
+  s << "partial: " << (r.decide.partial ? "true" : "false") << "\nvalid_for:\n";
   for (const Channel& c : d.channels) {
     if (!c.input) continue;
     double low = INFINITY, high = -INFINITY;

@@ -5,14 +5,14 @@
 // rivals wins; among equals, that of the largest smallest T. Its chance is counted over 50 simulated records: the truth drawn in turn, its values by their
 // covariance, noise added, every rival fitted (linearly); it decides where the truth leads all others by more than a tie, the evidence so far included.
 
+#include "reconcile/next_experiment.h"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "base/rng.h"
-#include "reconcile/result.h"
-#include "reconcile/rules.h"
 
 namespace filum::reconcile {
 namespace {
@@ -148,10 +148,10 @@ struct Outcome {
   double chance = 0.0, left = 0.0;
 };
 
-Outcome outcome_of(const std::vector<Rival>& rivals, double tie) {
+Outcome outcome_of(const std::vector<Rival>& rivals, double tie, int records) {
   Rng rng(7);
   int decided = 0, remaining = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(assumed::kRecords); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(records); ++i) {
     const Rival& truth = rivals[i % rivals.size()];
     Eigen::VectorXd z(truth.J.cols()), y = truth.y;
     for (double& v : z) v = rng.normal();
@@ -162,7 +162,7 @@ Outcome outcome_of(const std::vector<Rival>& rivals, double tie) {
     decided += others == 0 ? 1 : 0;
     remaining += 1 + static_cast<int>(others);
   }
-  return {decided / static_cast<double>(assumed::kRecords), remaining / static_cast<double>(assumed::kRecords)};
+  return {decided / static_cast<double>(records), remaining / static_cast<double>(records)};
 }
 
 /// Share of the pairs that a record is to decide: twice the log likelihood ratio of two rivals is normal, mean T and variance 4 T (Cox 1961).
@@ -181,8 +181,8 @@ double pairs_decided(const std::vector<Rival>& rivals, double tie, double& least
 
 }  // namespace
 
-std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::vector<const Fit*>& rivals, const std::vector<double>& evidence, double dispersion, double tie) {
-  NextExperiment best;
+std::optional<NextSummary> next_experiment(const Fitter& fitter, const std::vector<const Fit*>& rivals, const std::vector<double>& evidence, double dispersion, double tie, const NextOptions& options) {
+  NextSummary best;
   double most = -1.0, distance = 0.0;
   std::vector<Rival> chosen;
   const OutputNoise& noise = fitter.noise().output[0];
@@ -202,7 +202,7 @@ std::optional<NextExperiment> next_experiment(const Fitter& fitter, const std::v
     if (share_decided > most + 1e-3 || (share_decided > most - 1e-3 && least > distance)) most = share_decided, distance = least, best.protocol = p.text, chosen = std::move(on);
   }
   if (most < 0.0) return std::nullopt;
-  const Outcome outcome = outcome_of(chosen, tie);
+  const Outcome outcome = outcome_of(chosen, tie, options.records);
   best.chance = outcome.chance;
   char text[160];
   std::snprintf(text, sizeof text, "it leaves %.1f standard deviations of the noise between the two rivals that stay nearest, and on average %.1f of %d rivals", std::sqrt(distance), outcome.left,

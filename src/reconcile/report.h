@@ -1,5 +1,5 @@
 #pragma once
-// report.json (contract experiments.md), report.html (self-contained, inline SVG) and model.yaml. Each file appears whole or not
+// Stage write: report.json (contract experiments.md), report.html (self-contained, inline SVG) and model.yaml. Each file appears whole or not
 // at all (whole_file.h).
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,12 +14,16 @@ std::string model_yaml(const Dataset& d, const Result& r, const std::string& pro
 
 /// The rules that this rig's verdict went by.
 std::vector<RuleText> rules_of(const Dataset& d, const Result& r);
-/// What each stage of the pipeline did, in a sentence.
-struct StageText {
-  std::string stage, summary;
+
+struct WriteOptions {
+  std::string folder;   // made if need be
+  std::string program;  // its version, for model.yaml and report.html
 };
-std::vector<StageText> stages_of(const Dataset& d, const Result& r);
-/// Writes all files of a result into a folder, made if need be.
-void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program);
+struct WriteSummary {
+  std::vector<std::string> files;
+};
+/// The files that a result has, report.json last: its presence says that the report is whole.
+std::vector<std::string> files_of(const Result& r);
+WriteSummary write_report(const Dataset& d, const Result& r, const WriteOptions& options);
 
 }  // namespace filum::reconcile

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "reconcile/hardware.h"
 #include "reconcile/report.h"
+#include "reconcile/stages.h"
 #include "reconcile/whole_file.h"
 
 namespace filum::reconcile {
@@ -40,30 +40,30 @@ Json named(const std::vector<Effect>& effects) {
 /// Evidence against the best set: 0 for the best, the more negative the worse.
 Json rivals_json(const Result& r) {
   double best = 0.0;
-  for (const Tried& t : r.tried) best = std::min(best, t.evidence);
-  if (r.verdict == "ambiguous" && !r.rivals.empty()) best = r.rivals[0].evidence;
+  for (const Tried& t : r.decide.tried) best = std::min(best, t.evidence);
+  if (r.decide.verdict == "ambiguous" && !r.decide.rivals.empty()) best = r.decide.rivals[0].evidence;
   Json out = Json::array();
-  for (const Tried& t : r.rivals)
+  for (const Tried& t : r.decide.rivals)
     out.push_back({{"effects", named(t.effects)}, {"evidence", finite(best - t.evidence)}, {"form", t.form}, {"explained", finite(t.explained)}});
   return out;
 }
 
 Json noise_json(const Dataset& d, const Result& r) {
   Json out = Json::object();
-  for (std::size_t c = 0; c < d.outputs.size() && c < r.noise.output.size(); ++c) {
-    std::string unit = "-";
+  for (std::size_t c = 0; c < d.outputs.size() && c < r.fit.noise.output.size(); ++c) {
+    const bool field = d.rig == Rig::spatula_press && d.outputs[c][0] == 'u';
+    std::string unit = field ? "m" : "-";
     for (const ChannelInfo& k : info(d.rig).channels)
-      if (k.name == d.outputs[c]) unit = k.unit;
-    if (d.rig == Rig::spatula_press && d.outputs[c][0] == 'u') unit = "m";
-    const OutputNoise& o = r.noise.output[c];
+      if (!field && k.name == d.outputs[c]) unit = k.unit;
+    const OutputNoise& o = r.fit.noise.output[c];
     out[d.outputs[c]] = {{"value", o.sigma}, {"unit", unit}, {"from", o.from}, {"autocorrelation", (1.0 - o.white) * o.rho}, {"white", o.white}};
   }
   return out;
 }
 
-Json where_json(const std::vector<Cell>& cells) {
+Json where_json(const std::vector<Cell>& cells, int most) {
   Json out = Json::array();
-  for (std::size_t i = 0; i < cells.size() && i < 12; ++i) out.push_back({{"trial", cells[i].trial}, {"phase", cells[i].phase}, {"range", cells[i].range}, {"share", finite(cells[i].share)}});
+  for (std::size_t i = 0; i < cells.size() && i < static_cast<std::size_t>(most); ++i) out.push_back({{"trial", cells[i].trial}, {"phase", cells[i].phase}, {"range", cells[i].range}, {"share", finite(cells[i].share)}});
   return out;
 }
 
@@ -97,12 +97,12 @@ Json rules_json(const std::vector<RuleText>& rules) {
   return out;
 }
 
-Json detection_json(const Detection& d) {
+Json detection_json(const DetectSummary& d) {
   return {{"statistic", finite(d.statistic)}, {"score", finite(d.score)}, {"score_is", d.score_is}, {"p", d.p}, {"chance", d.chance}, {"repetitions", d.repetitions}, {"excess", finite(d.excess)},
           {"trial", d.trial}, {"from", finite(d.from)}, {"to", finite(d.to)}};
 }
 
-Json confirmation_json(const Confirmation& c) {
+Json confirmation_json(const ConfirmSummary& c) {
   Json values = Json::object();
   for (const NamedEffect& e : c.values) values[info(e.effect).name] = json_of(e.parameters);
   return {{"solver", c.solver}, {"ran", c.ran}, {"holds", c.holds}, {"difference", finite(c.difference)}, {"mesh", finite(c.mesh)}, {"evidence", finite(-c.evidence)},
@@ -112,16 +112,16 @@ Json confirmation_json(const Confirmation& c) {
 /// Of all sets that are not told apart; `correlation` and `masked` are those of the first two and of the first.
 Json ambiguity_json(const Result& r) {
   Json sets = Json::array(), rows = Json::array(), masked = Json::array();
-  const auto n = r.alike.correlation.rows();
+  const auto n = r.decide.alike.correlation.rows();
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     Json one = Json::array();
-    for (Eigen::Index j = 0; j < n; ++j) one.push_back(finite(r.alike.correlation(i, j)));
+    for (Eigen::Index j = 0; j < n; ++j) one.push_back(finite(r.decide.alike.correlation(i, j)));
     rows.push_back(std::move(one));
-    sets.push_back(names(r.alike_sets[k]));
-    masked.push_back(finite(r.alike.masked[k]));
+    sets.push_back(named(r.decide.alike_sets[k]));
+    masked.push_back(finite(r.decide.alike.masked[k]));
   }
-  return {{"correlation", finite(r.alike.correlation(0, 1))}, {"masked", finite(r.alike.masked[0])}, {"sets", sets}, {"correlations", rows}, {"masked_each", masked}};
+  return {{"correlation", finite(r.decide.alike.correlation(0, 1))}, {"masked", finite(r.decide.alike.masked[0])}, {"sets", sets}, {"correlations", rows}, {"masked_each", masked}};
 }
 
 Json folds_json(const std::vector<Fold>& folds) {
@@ -151,9 +151,9 @@ Json numerics_json(const Numerics& n) {
   return {{"time_halved", finite(n.time)}, {"mesh_halved", finite(n.mesh)}, {"sensitivities", steps}};
 }
 
-Json hardware_json(const Dataset& d, const Result& r) {
+Json hardware_json(const Result& r) {
   Json out = Json::array();
-  for (const auto& checks : {check_hardware(d), check_units(d, r.baseline)})
+  for (const auto& checks : {r.lint.hardware, r.decide.units})
     for (const HardwareCheck& h : checks) out.push_back({{"check", h.what}, {"where", h.where}, {"found", h.found}});
   return out;
 }
@@ -166,20 +166,20 @@ std::string hash_text(const Dataset& d) {
 
 /// What the verdict rests on, after what it says.
 void add_grounds(const Dataset& d, const Result& r, Json& j) {
-  if (!r.shape.empty()) j["shape"] = json_of(r.shape);
-  if (!r.residual_terms.empty()) j["residual_terms"] = json_of(r.residual_terms);
-  j["tried"] = tried_json(r.tried);
-  j["screened"] = screened_json(r.screened);
+  if (!r.describe.shape.empty()) j["shape"] = json_of(r.describe.shape);
+  if (!r.describe.baseline.empty()) j["residual_terms"] = json_of(r.describe.baseline);
+  j["tried"] = tried_json(r.decide.tried);
+  j["screened"] = screened_json(r.screen.effects);
   Json stages = Json::array();
-  for (const StageText& x : stages_of(d, r)) stages.push_back({{"stage", x.stage}, {"summary", x.summary}});
+  for (const Stage& x : stages_of(d, r)) stages.push_back({{"stage", x.name}, {"options", x.options}, {"found", x.found}, {"summary", x.summary}});
   j["stages"] = stages;
   j["rules"] = rules_json(rules_of(d, r));
-  if (r.alike_sets.size() > 1) j["ambiguity"] = ambiguity_json(r);
-  if (r.detection) j["detection"] = detection_json(*r.detection);
-  if (r.confirmation) j["confirmation"] = confirmation_json(*r.confirmation);
-  j["baseline_starts"] = starts_json(d, r.starts);
-  j["numerics"] = numerics_json(r.numerics);
-  j["hardware"] = hardware_json(d, r);
+  if (r.decide.alike_sets.size() > 1) j["ambiguity"] = ambiguity_json(r);
+  if (r.detect) j["detection"] = detection_json(*r.detect);
+  if (r.confirm) j["confirmation"] = confirmation_json(*r.confirm);
+  j["baseline_starts"] = starts_json(d, r.baseline);
+  j["numerics"] = numerics_json(r.decide.numerics);
+  j["hardware"] = hardware_json(r);
   j["notices"] = d.notices;
   j["dataset_hash"] = hash_text(d);
 }
@@ -189,40 +189,42 @@ void add_grounds(const Dataset& d, const Result& r, Json& j) {
 std::vector<RuleText> rules_of(const Dataset& d, const Result& r) { return d.rig == Rig::tip_hold ? listed(HoldRules{}, r.rules) : listed(r.rules); }
 
 Json report_json(const Dataset& d, const Result& r) {
-  const bool effect = r.verdict == "effect";
-  Json j = {{"format", "filum-reconcile/1"}, {"dataset", d.name}, {"rig", info(d.rig).name}, {"verdict", r.verdict}};
+  const bool effect = r.decide.verdict == "effect";
+  Json j = {{"format", "filum-reconcile/1"}, {"dataset", d.name}, {"rig", info(d.rig).name}, {"verdict", r.decide.verdict}};
   Json effects = Json::array();
   if (effect)
-    for (const NamedEffect& e : r.effects) effects.push_back({{"name", info(e.effect).name}, {"form", e.form}, {"parameters", json_of(e.parameters)}});
+    for (const NamedEffect& e : r.decide.effects) effects.push_back({{"name", info(e.effect).name}, {"form", e.form}, {"parameters", json_of(e.parameters)}});
   j["effects"] = effects;
-  j["baseline"] = json_of(r.baseline.empty() ? r.baseline_alone : r.baseline);
+  j["baseline"] = json_of(r.decide.baseline.empty() ? r.baseline.alone : r.decide.baseline);
   j["rivals"] = rivals_json(r);
   j["gap"] = {{"noise", noise_json(d, r)},
-              {"fit", {{"before", finite(r.fit.before)}, {"after", finite(r.fit.after)}}},
-              {"held_out", {{"before", finite(r.held_out.before)}, {"after", finite(r.held_out.after)}, {"how", r.held_out_how}, {"folds", folds_json(r.folds)}}}};
-  j["where"] = where_json(r.where);
-  j["where_by"] = where_by_json(r.where_by);
-  j["not_testable"] = not_testable_json(r.not_testable);
-  j["partial"] = r.partial;
+              {"fit", {{"before", finite(r.decide.gap.before)}, {"after", finite(r.decide.gap.after)}}},
+              {"held_out", {{"before", finite(r.challenge.gap.before)}, {"after", finite(r.challenge.gap.after)}, {"how", r.challenge.how}, {"folds", folds_json(r.challenge.folds)}}}};
+  j["where"] = where_json(r.localise.cells, r.rules.localise.most_cells);
+  j["where_by"] = where_by_json(r.localise.by);
+  j["not_testable"] = not_testable_json(r.lint.not_testable);
+  j["partial"] = r.decide.partial;
   j["next_experiment"] = r.next ? Json{{"protocol", r.next->protocol}, {"why", r.next->why}, {"chance", r.next->chance}} : Json(nullptr);
   j["model_written"] = effect ? Json("model.yaml") : Json(nullptr);
   j["seconds"] = r.seconds;
-  j["sentence"] = r.sentence;
+  j["sentence"] = r.decide.sentence;
   add_grounds(d, r, j);
   return j;
 }
 
-namespace {
+std::vector<std::string> files_of(const Result& r) {
+  return r.decide.verdict == "effect" ? std::vector<std::string>{"report.html", "model.yaml", "report.json"} : std::vector<std::string>{"report.html", "report.json"};
+}
 
-}  // namespace
-
-void write_report(const Dataset& d, const Result& r, const std::string& folder, const std::string& program) {
+WriteSummary write_report(const Dataset& d, const Result& r, const WriteOptions& options) {
+  const auto& [folder, program] = options;
   std::filesystem::create_directories(folder);
   write_whole(folder + "/report.html", report_html(d, r, program));
-  if (r.verdict == "effect") write_whole(folder + "/model.yaml", model_yaml(d, r, program));
+  if (r.decide.verdict == "effect") write_whole(folder + "/model.yaml", model_yaml(d, r, program));
   else std::filesystem::remove(folder + "/model.yaml");
   // last, since its presence says that the report is whole
   write_whole(folder + "/report.json", report_json(d, r).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  return {files_of(r)};
 }
 
 }  // namespace filum::reconcile

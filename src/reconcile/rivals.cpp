@@ -10,7 +10,7 @@ namespace {
 bool instrument(const Form* f) { return info(f->effect).stage == 0; }
 
 /// The instruments and what the winner has beside them, fitted together.
-Fit together(const Search& search, const Fit& instruments, const Fit& winner) {
+Fit together(const Candidates& sets, const Fit& instruments, const Fit& winner) {
   auto forms = instruments.forms;
   auto params = instruments.params;
   const auto mine = effects_in(instruments);
@@ -19,11 +19,11 @@ Fit together(const Search& search, const Fit& instruments, const Fit& winner) {
     forms.push_back(winner.forms[k]);
     params.push_back(winner.params[k]);
   }
-  return search.fitter().fit(forms, winner.base, params, {18, 1e-4}, &winner);
+  return sets.fitter().fit(forms, winner.base, params, {18, 1e-4}, &winner);
 }
 
 /// Held-out misfit of both over the folds that count for both: whether the first is left with less.
-bool predicts_better(const Challenge& a, const Challenge& b) {
+bool predicts_better(const ChallengeSummary& a, const ChallengeSummary& b) {
   double first = 0.0, second = 0.0;
   bool any = false;
   for (std::size_t i = 0; i < a.folds.size() && i < b.folds.size(); ++i)
@@ -33,19 +33,19 @@ bool predicts_better(const Challenge& a, const Challenge& b) {
 
 }  // namespace
 
-std::vector<const Fit*> rivals_of(const Search& search, const Fit& winner, const Rules& rules, const std::vector<NotTestable>& hidden) {
+std::vector<const Fit*> rivals_of(const Candidates& sets, const Fit& winner, const DecideOptions& options, const std::vector<NotTestable>& hidden) {
   std::vector<const Fit*> out;
   const bool unsure = std::any_of(winner.forms.begin(), winner.forms.end(), [&](const Form* f) {
     return f->one_size || std::any_of(hidden.begin(), hidden.end(), [&](const NotTestable& n) { return n.effect == f->effect; });
   });
-  const double tie = unsure ? rules.untestable_tie : rules.tie;
-  for (const Fit& f : search.candidates()) {
+  const double tie = unsure ? options.untestable_tie : options.tie;
+  for (const Fit& f : sets.fitted()) {
     if (&f == &winner || f.forms.size() > winner.forms.size()) continue;
     // a rival whose deciding protocol was not run is listed as not testable: it must come nearer to be a rival
     const bool aside = !unsure && std::any_of(f.forms.begin(), f.forms.end(), [&](const Form* g) {
       return std::any_of(hidden.begin(), hidden.end(), [&](const NotTestable& n) { return n.effect == g->effect; });
     });
-    if (search.bic(f) - search.bic(winner) < (aside ? rules.aside_tie : tie) && search.explained(f) >= rules.explained) out.push_back(&f);
+    if (sets.bic(f) - sets.bic(winner) < (aside ? options.aside_tie : tie) && sets.explained(f) >= sets.rules().explained) out.push_back(&f);
   }
   return out;
 }
@@ -60,16 +60,24 @@ std::set<Effect> common(const Fit& winner, const std::vector<const Fit*>& rivals
   return shared;
 }
 
-std::vector<const Fit*> instruments_not_outdone(const Search& search, const Fit& winner, const Challenge& challenged, const Options& options) {
+std::vector<const Fit*> instruments_not_outdone(const Candidates& sets, const Fit& winner, const ChallengeSummary& challenged, const ChallengeOptions& options, const Run& run) {
   std::vector<const Fit*> out;
   if (std::all_of(winner.forms.begin(), winner.forms.end(), instrument)) return out;
-  for (const Fit& f : search.candidates()) {
-    if (f.forms.size() > winner.forms.size() || !std::all_of(f.forms.begin(), f.forms.end(), instrument) || search.explained(f) < options.rules.explained) continue;
-    if (earns_its_place(search, f, together(search, f, winner), options.rules)) continue;
-    if (predicts_better(challenged, challenge(search, search.base(), f, options))) continue;
+  for (const Fit& f : sets.fitted()) {
+    if (f.forms.size() > winner.forms.size() || !std::all_of(f.forms.begin(), f.forms.end(), instrument) || sets.explained(f) < sets.rules().explained) continue;
+    if (earns_its_place(sets, f, together(sets, f, winner))) continue;
+    if (predicts_better(challenged, challenge(sets, &f, options, run))) continue;
     out.push_back(&f);
   }
   return out;
+}
+
+std::vector<const Fit*> all_rivals(const Candidates& sets, const Fit* winner, const LintSummary& lint, const ChallengeSummary& challenged, const Rules& rules, const Run& run) {
+  if (winner == nullptr) return {};
+  auto rivals = rivals_of(sets, *winner, rules.decide, lint.not_testable);
+  for (const Fit* f : instruments_not_outdone(sets, *winner, challenged, rules.challenge, run))
+    if (std::find(rivals.begin(), rivals.end(), f) == rivals.end()) rivals.push_back(f);
+  return rivals;
 }
 
 }  // namespace filum::reconcile

@@ -1,272 +1,87 @@
 #include "reconcile/screen.h"
-#include "reconcile/rules.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
-#include <set>
 
 namespace filum::reconcile {
-
-Screen::Screen(const Fitter& fitter, const Fit& fit) : fitter_(fitter), fit_(fit) {
-  const auto g = fitter.globals(fit.forms);
-  const auto ng = static_cast<Eigen::Index>(g.size());
-  const int own = fitter.own_parameters();
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(ng, ng), all = A, J;
-  for (std::size_t i = 0; i < fitter.use.size(); ++i) {
-    if (!fitter.use[i]) continue;
-    trials_.push_back(static_cast<int>(i));
-    r_.push_back(fitter.residual(static_cast<int>(i), fitter.setting(fit, static_cast<int>(i))));
-    fitter.linearise(fit, g, static_cast<int>(i), r_.back(), J);
-    G_.push_back(J.leftCols(ng));
-    N_.push_back(J.rightCols(own));
-    Eigen::MatrixXd D = N_.back().transpose() * N_.back();
-    int k = 0;
-    if (fitter.model().has_scale()) D(k, k) += 1.0 / std::pow(fitter.noise().scatter, 2), ++k;
-    if (fitter.model().has_gain()) D(k, k) += 1.0 / std::pow(fitter.noise().gain_scatter, 2);
-    D_.push_back(own > 0 ? D.ldlt().solve(Eigen::MatrixXd::Identity(own, own)).eval() : D);
-    C_.push_back(G_.back().transpose() * N_.back());
-    all.noalias() += G_.back().transpose() * G_.back();
-    A.noalias() += G_.back().transpose() * G_.back();
-    if (own > 0) A.noalias() -= C_.back() * D_.back() * C_.back().transpose();
-  }
-  instrument_ = Eigen::VectorXd::Zero(ng);
-  for (Eigen::Index k = 0; k < ng; ++k)
-    if (const auto& p = g[static_cast<std::size_t>(k)]; p.form == Fitter::kInstrument) {
-      const double weight = std::pow(fitter.noise().gain_scatter, -2);
-      instrument_[k] = weight * std::log(fit.instrument[static_cast<std::size_t>(p.index)]);
-      A(k, k) += weight, all(k, k) += weight;
-      shared_.push_back(k);
-    }
-  for (Eigen::Index k = 0; k < ng; ++k) A(k, k) += 1e-9 * std::max(A(k, k), 1e-12) + 1e-300, all(k, k) += 1e-12 * all(k, k) + 1e-300;
-  common_ = ng > 0 ? all.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : all;
-  S_ = ng > 0 ? A.ldlt().solve(Eigen::MatrixXd::Identity(ng, ng)).eval() : A;
-}
-
-Screen::Signature Screen::signature(const Form& form, const std::vector<double>& start) const { return signature(std::vector<const Form*>{&form}, {start}); }
-
-Screen::Signature Screen::signature(const std::vector<const Form*>& forms, const std::vector<std::vector<double>>& params) const {
-  Signature out;
-  Fit with = fit_;
-  with.forms.insert(with.forms.end(), forms.begin(), forms.end());
-  with.params.insert(with.params.end(), params.begin(), params.end());
-  out.g = Eigen::VectorXd::Zero(S_.rows());
-  for (std::size_t i = 0; i < trials_.size(); ++i) {
-    Eigen::VectorXd s = fitter_.residual(trials_[i], fitter_.setting(with, trials_[i])) - r_[i];
-    if (!s.allFinite()) s.setZero();
-    Eigen::VectorXd n = N_[i].transpose() * s;
-    out.g += G_[i].transpose() * s;
-    if (n.size() > 0) out.g -= C_[i] * (D_[i] * n);
-    out.norm += s.squaredNorm();
-    out.n.push_back(std::move(n));
-    out.s.push_back(std::move(s));
-  }
-  return out;
-}
-
-double Screen::inner(const Signature& a, const Signature& b) const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < trials_.size(); ++i) {
-    sum += a.s[i].dot(b.s[i]);
-    if (a.n[i].size() > 0) sum -= a.n[i].dot(D_[i] * b.n[i]);
-  }
-  return a.g.size() > 0 ? sum - a.g.dot(S_ * b.g) : sum;
-}
-
-Score Screen::score(const Form& form, const std::vector<double>& start) const {
-  Score out{&form, start, 0.0, 0.0, 0.0, 1.0, 1.0};
-  const Signature s = signature(form, start);
-  out.seen = std::max(0.0, inner(s, s));
-  if (s.norm <= 0.0) out.imitated = 0.0;  // there is nothing to imitate
-  if (s.norm <= 0.0 || out.seen <= 1e-9 * s.norm) return out;
-  out.masked = 1.0 - out.seen / s.norm;
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(common_.rows());
-  for (std::size_t i = 0; i < trials_.size(); ++i) g += G_[i].transpose() * s.s[i];
-  out.imitated = g.size() > 0 ? g.dot(common_ * g) / s.norm : 0.0;
-  // at the optimum the residual is orthogonal to what is fitted, so no projection of it is needed
-  double along = 0.0;
-  for (std::size_t i = 0; i < trials_.size(); ++i) along += s.s[i].dot(r_[i]);
-  if (!S_.isZero(0.0) || !D_.empty()) {
-    Signature r;
-    r.g = Eigen::VectorXd::Zero(S_.rows());
-    for (std::size_t i = 0; i < trials_.size(); ++i) {
-      Eigen::VectorXd n = N_[i].transpose() * r_[i];
-      const auto t = static_cast<std::size_t>(trials_[i]);
-      int k = 0;
-      if (fitter_.model().has_scale()) n[k++] += fit_.log_scale[t] / std::pow(fitter_.noise().scatter, 2);
-      if (fitter_.model().has_gain()) n[k] += fit_.log_gain[t] / std::pow(fitter_.noise().gain_scatter, 2);
-      r.g += G_[i].transpose() * r_[i];
-      if (n.size() > 0) r.g -= C_[i] * (D_[i] * n), along -= s.n[i].dot(D_[i] * n);
-    }
-    if (r.g.size() > 0) along -= s.g.dot(S_ * (r.g + instrument_));
-  }
-  out.amplitude = -along / out.seen;
-  const bool either_sign = !form.params.empty() && form.params[0].low < 0.0 && form.params[0].high > 0.0;
-  if (out.amplitude > 0.0 || either_sign) out.gain = along * along / out.seen;
-  if (out.amplitude > assumed::kFarStart) out.gain *= assumed::kFarPromise;  // far from the start: the promise is less sure
-  return out;
-}
-
-std::vector<Score> Screen::all(const std::vector<Form>& forms) const {
-  std::vector<Score> out;
-  for (const Form& f : forms) {
-    if (f.line) continue;
-    if (std::any_of(fit_.forms.begin(), fit_.forms.end(), [&](const Form* g) { return g->effect == f.effect; })) continue;
-    for (const auto& start : f.starts) out.push_back(score(f, start));
-  }
-  std::stable_sort(out.begin(), out.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
-  return out;
-}
-
-std::vector<Eigen::VectorXd> Screen::repetition(Rng& rng) const {
-  std::vector<Eigen::VectorXd> y;
-  std::vector<double> gain;  // errors of the instruments, the same in all records
-  for (std::size_t k = 0; k < shared_.size(); ++k) gain.push_back(fitter_.noise().gain_scatter * rng.normal());
-  for (std::size_t i = 0; i < trials_.size(); ++i) {
-    y.emplace_back(r_[i].size());
-    for (double& v : y[i]) v = rng.normal();
-    Eigen::Index k = 0;
-    if (fitter_.model().has_scale()) y[i] += N_[i].col(k++) * (fitter_.noise().scatter * rng.normal());
-    if (fitter_.model().has_gain()) y[i] += N_[i].col(k) * (fitter_.noise().gain_scatter * rng.normal());
-    for (std::size_t k = 0; k < shared_.size(); ++k) y[i] += G_[i].col(shared_[k]) * gain[k];
-  }
-  return y;
-}
-
-void Screen::refit(std::vector<Eigen::VectorXd>& y) const {
-  std::vector<Eigen::VectorXd> n;
-  Eigen::VectorXd g = Eigen::VectorXd::Zero(S_.rows());
-  for (std::size_t i = 0; i < trials_.size(); ++i) {
-    n.push_back(N_[i].transpose() * y[i]);
-    g += G_[i].transpose() * y[i];
-    if (n[i].size() > 0) g -= C_[i] * (D_[i] * n[i]);
-  }
-  const Eigen::VectorXd x = S_.rows() > 0 ? Eigen::VectorXd(S_ * g) : g;
-  for (std::size_t i = 0; i < trials_.size(); ++i) {
-    if (x.size() > 0) y[i] -= G_[i] * x;
-    if (n[i].size() == 0) continue;
-    if (x.size() > 0) n[i] -= C_[i].transpose() * x;
-    y[i] -= N_[i] * (D_[i] * n[i]);
-  }
-}
-
-Screen::Direction Screen::direction(const Form& form, const std::vector<double>& start) const {
-  const Signature s = signature(form, start);
-  Direction out{s.s, std::max(0.0, inner(s, s)), !form.params.empty() && form.params[0].low < 0.0 && form.params[0].high > 0.0};
-  if (out.seen <= 1e-9 * s.norm) out.seen = 0.0;
-  refit(out.q);  // the projection is symmetric: P s
-  return out;
-}
-
-Likeness Screen::likeness(const std::vector<const Fit*>& sets) const {
-  std::vector<Signature> all;
-  for (const Fit* f : sets) all.push_back(signature(f->forms, f->params));
-  const auto n = static_cast<Eigen::Index>(sets.size());
-  Likeness out{Eigen::MatrixXd::Zero(n, n), {}};
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index k = 0; k < n; ++k) out.correlation(i, k) = inner(all[static_cast<std::size_t>(i)], all[static_cast<std::size_t>(k)]);
-  const Eigen::VectorXd seen = out.correlation.diagonal().cwiseMax(0.0);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double norm = all[static_cast<std::size_t>(i)].norm;
-    out.masked.push_back(norm > 0.0 ? 1.0 - seen[i] / norm : 1.0);
-    for (Eigen::Index k = 0; k < n; ++k) out.correlation(i, k) = i == k ? 1.0 : seen[i] > 0.0 && seen[k] > 0.0 ? out.correlation(i, k) / std::sqrt(seen[i] * seen[k]) : 0.0;
-  }
-  return out;
-}
-
 namespace {
 
-/// Why an effect is not testable; no words: it is.
-struct Reason {
-  std::string why;
-  bool hidden = false;  // NotTestable
-};
-
-/// Reasons that follow from the list of trials.
-std::string missing_condition(const Dataset& d, Effect e) {
-  std::set<std::string> modes, sides;
-  std::set<double> lateral, aspect;
-  for (const Trial& t : d.trials) {
-    modes.insert(t.word("mode"));
-    sides.insert(t.word("orientation"));
-    const double width = d.rig == Rig::spatula_press ? t.size("blade_width") : t.size("diameter", t.size("width"));
-    lateral.insert(std::round(1e6 * width) + 1e6 * std::round(1e6 * t.size("height")));
-    aspect.insert(std::round(1e3 * width / std::max(t.size("height"), 1e-9)));
-  }
-  switch (e) {
-    case Effect::tension_compression_asymmetry:
-      return modes.count("compression") && modes.count("tension") ? "" : "not both tension and compression";
-    case Effect::platen_friction: return aspect.size() > 1 ? "" : "one width-to-height ratio only: friction looks like a higher modulus";
-    case Effect::poroelastic_drainage: return lateral.size() > 1 ? "" : "one specimen size only: drainage looks like relaxation";
-    case Effect::rest_curvature: return sides.size() > 1 ? "" : "one orientation only: curvature looks like a different weight";
-    default: return "";
-  }
+std::string share_text(const char* format, double value) {
+  char out[120];
+  std::snprintf(out, sizeof out, format, value);
+  return out;
 }
 
-Reason clock_condition(const Dataset& d, Effect e) {
-  double rate = 1e300, span = 0.0;
-  for (const Trial& t : d.trials) {
-    if (!t.clocked) return {"no time channel"};
-    const double length = t.time[t.samples() - 1] - t.time[0];
-    rate = std::min(rate, (t.samples() - 1) / length);
-    span = std::max(span, length);
-  }
-  if (e == Effect::pulsation && (rate < assumed::kHeartSampling || span < assumed::kHeartSpan)) return {"records too short or sampled too slowly for a heart beat", true};
-  if (e == Effect::physiological_tremor && rate < assumed::kTremorSampling) return {"sampled more slowly than twice 8 Hz", true};
-  if (e == Effect::mains_hum && (rate < assumed::kHumSampling || span * rate < assumed::kHumSamples)) return {"too few samples: sampled so slowly that 50 Hz folds onto anything", true};
-  return {};
+bool was_fitted(const Candidates& sets, Effect effect) {
+  return std::any_of(sets.fitted().begin(), sets.fitted().end(),
+                     [&](const Fit& f) { return std::any_of(f.forms.begin(), f.forms.end(), [&](const Form* g) { return g->effect == effect; }); });
 }
 
-/// Reasons that follow from the clearest signature an effect could leave in these records; `seen`: its squared signal to noise.
-Reason signature_condition(const Score* clearest, double seen, double masked, double testable) {
-  if (clearest == nullptr) return {"these trials never bring it about"};
-  if (clearest->seen <= 0.0 && clearest->imitated <= 0.0) return {"these trials never bring it about", true};
-  if (clearest->imitated > masked) return {"a change of the baseline's own parameters imitates it (masked to " + std::to_string(static_cast<int>(std::floor(1000 * clearest->imitated)) / 10) + " %)", true};
-  if (seen < testable) return {"even a strong effect would change these records by less than their noise", true};
-  return {};
+/// Why a form was not fitted; `score`: its best, may be absent; `top`: the best promise of all.
+std::string why_not(const Candidates& sets, const Form& form, const Score* score, double top, const ScreenOptions& options, double p_most) {
+  if (form.line) {
+    const double p = sets.line_chance(form, sets.base());
+    return p > p_most ? share_text("not fitted: a line as strong comes by chance in %.2g of the cases", p) : "not fitted: it stands out, but others promise far more";
+  }
+  if (score == nullptr || score->gain < options.least) return share_text("not fitted: promises less than %.3g", options.least);
+  if (score->gain < options.share * top) return share_text("not fitted: less than %.2g of the best promise", options.share);
+  return "not fitted: promised too little before the noise was known";
 }
+
+/// Starts of one effect's form that are tried: more where several values matter, or two places are looked at (50 and 60 Hz may fold to the same line).
+int starts_of(const Form& f) { return f.params.size() > 1 || f.effect == Effect::saturation || f.effect == Effect::mains_hum ? 2 : 1; }
 
 }  // namespace
 
-std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& forms, double masked, double testable) {
-  const Dataset& d = model.data();
-  Noise noise;
-  double clearer = 1.0;  // where less noise than 1 % of full scale is stated
-  for (const std::string& name : d.outputs) {
-    const double fs = model.full_scale(name);
-    noise.output.push_back({assumed::kLintNoise * fs, 0.0, fs, ""});
-    if (const double stated = d.channel(name).noise; stated > 0.0) clearer = std::max(clearer, std::pow(assumed::kLintNoise * fs / stated, 2));
-  }
-  Fitter fitter(model, noise);
-  Fit base;
-  base.base = model.guess();
-  base.log_scale.assign(d.trials.size(), 0.0);
-  base.log_gain.assign(d.trials.size(), 0.0);
-  base.instrument.assign(d.outputs.size(), 1.0);
-  const Screen screen(fitter, base);
-  std::map<Effect, Score> best;
-  std::set<Effect> lines;
-  for (const Form& f : forms) {
-    if (f.line) lines.insert(f.effect);
-    for (const auto& start : f.starts) {
-      const Score s = screen.score(f, start);
-      if (auto at = best.find(f.effect); at == best.end() || s.seen > at->second.seen) best[f.effect] = s;
+std::vector<Score> promising(const Candidates& sets, const Fit& from, const ScreenOptions& options) {
+  std::vector<Score> scores = ScoreTests(sets.fitter(), from).all(sets.forms());
+  for (Score& s : sets.lines(from)) scores.push_back(std::move(s));
+  std::stable_sort(scores.begin(), scores.end(), [](const Score& a, const Score& b) { return a.gain > b.gain; });
+  if (scores.empty()) return {};
+  const double top = scores[0].gain;
+  const auto instrument = [&](const Score& s) { return from.forms.empty() && info(s.form->effect).stage == 0 && s.gain >= options.least; };
+  std::stable_partition(scores.begin(), scores.end(), instrument);
+  std::vector<Effect> order;
+  std::map<Effect, std::map<int, int>> used;
+  std::vector<Score> chosen;
+  for (const Score& s : scores) {
+    const Effect e = s.form->effect;
+    const bool seen = std::find(order.begin(), order.end(), e) != order.end() || instrument(s);
+    if (!seen) {
+      if (static_cast<int>(order.size()) >= options.most || s.gain < options.least) continue;
+      if (order.size() >= 3 && s.gain < options.share * top) continue;
+      order.push_back(e);
     }
+    auto& forms = used[e];
+    const bool new_form = forms.count(s.form->kind) == 0;
+    if (new_form && static_cast<int>(forms.size()) >= options.forms && s.form->kind != 0) continue;
+    if (!new_form && forms[s.form->kind] >= starts_of(*s.form)) continue;
+    ++forms[s.form->kind];
+    chosen.push_back(s);
   }
-  std::vector<NotTestable> out;
-  for (const Effect e : effects_of(d.rig)) {
-    Reason reason{missing_condition(d, e)};
-    const bool line = lines.count(e) > 0 || e == Effect::physiological_tremor;
-    if (line || e == Effect::sensor_lag || e == Effect::sensor_drift)
-      if (reason.why.empty()) reason = clock_condition(d, e);
-    if (reason.why.empty() && !line) {
-      const auto at = best.find(e);
-      const Score* clearest = at == best.end() ? nullptr : &at->second;
-      reason = signature_condition(clearest, clearest == nullptr ? 0.0 : clearest->seen * clearer, masked, testable);
-    }
-    if (!reason.why.empty()) out.push_back({e, reason.why, info(e).shows, reason.hidden});
+  return chosen;
+}
+
+ScreenSummary screen(const Candidates& sets, const ScreenOptions& options) { return {promising(sets, sets.base(), options), {}}; }
+
+std::vector<Screened> screened(const Candidates& sets, const ScreenOptions& options, double p) {
+  const auto scores = ScoreTests(sets.fitter(), sets.base()).all(sets.forms());
+  const double top = scores.empty() ? 0.0 : scores[0].gain;
+  std::vector<Screened> out;
+  for (const Form& f : sets.fitter().model().all_forms()) {
+    if (std::any_of(out.begin(), out.end(), [&](const Screened& s) { return s.effect == f.effect; })) continue;
+    Screened s{f.effect, f.text, 0.0, 1.0, ""};
+    const auto at = std::find_if(scores.begin(), scores.end(), [&](const Score& x) { return x.form->effect == f.effect; });
+    if (at != scores.end()) s.form = at->form->text, s.gain = at->gain, s.masked = at->masked;
+    if (f.line) s.gain = s.masked = NAN;  // of free phase: tested in the spectrum
+    if (was_fitted(sets, f.effect)) s.what = "fitted";
+    else if (std::none_of(sets.forms().begin(), sets.forms().end(), [&](const Form& g) { return g.effect == f.effect; })) s.what = "these trials could not show it";
+    else s.what = why_not(sets, f, at == scores.end() ? nullptr : &*at, top, options, p);
+    out.push_back(std::move(s));
   }
+  std::stable_sort(out.begin(), out.end(), [](const Screened& a, const Screened& b) { return a.gain > b.gain || (!std::isnan(a.gain) && std::isnan(b.gain)); });
   return out;
 }
 

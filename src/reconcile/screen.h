@@ -1,79 +1,29 @@
 #pragma once
-// Score tests: what a further effect would do to the residual, with everything already fitted free to answer. The signature of an
-// effect is the change of the whitened residual when it is switched on at one of its starting points; its part orthogonal to the
-// present model (baseline, effects, records' own scales) is what the data can show of it (Rao 1948; Plumlee 2017).
+// Stage screen: every effect by the best of its score tests (score_tests.h) or lines (lines.h) against the baseline; what promises enough is fitted.
+// Instruments first: as the cheapest explanation they are fitted whenever they promise anything, and take no place from the others.
 
-#include "base/rng.h"
-#include "reconcile/fit.h"
+#include "reconcile/candidates.h"
 
 namespace filum::reconcile {
 
-/// How alike the signatures of sets of effects are beyond what a refit could answer, and how much of each such a refit hides.
-struct Likeness {
-  Eigen::MatrixXd correlation;  // sets x sets, symmetric, 1 on the diagonal
-  std::vector<double> masked;   // 0 ... 1
-};
-
-struct Score {
-  const Form* form = nullptr;
-  std::vector<double> start;
-  double gain = 0.0;       // fall of chi2 that the score test promises
-  double amplitude = 0.0;  // in units of the start
-  double seen = 0.0;       // squared norm of the orthogonal part
-  double masked = 1.0;     // share of the signature that the present model can imitate
-  double imitated = 1.0;   // the same by its common parameters alone: what a record's own scale swallows still costs that scale's prior
-};
-
-class Screen {
- public:
-  Screen(const Fitter& fitter, const Fit& fit);
-  Score score(const Form& form, const std::vector<double>& start) const;
-  /// Every form at every start that is not part of the fit, best first.
-  std::vector<Score> all(const std::vector<Form>& forms) const;
-  /// What a repetition in which the fit is true would measure beyond it, whitened: white noise and the records' own scales.
-  std::vector<Eigen::VectorXd> repetition(Rng& rng) const;
-  /// In place: what a refit (made linear about the optimum) leaves of it.
-  void refit(std::vector<Eigen::VectorXd>& y) const;
-  /// q with which the score test of a form is (q.y)^2/seen.
-  struct Direction {
-    std::vector<Eigen::VectorXd> q;
-    double seen = 0.0;
-    bool either_sign = false;
-  };
-  Direction direction(const Form& form, const std::vector<double>& start) const;
-  const std::vector<Eigen::VectorXd>& residuals() const { return r_; }
-  const std::vector<int>& trials() const { return trials_; }
-  /// Of sets of effects, each switched on at its fitted values.
-  Likeness likeness(const std::vector<const Fit*>& sets) const;
-
- private:
-  struct Signature {
-    std::vector<Eigen::VectorXd> s;
-    Eigen::VectorXd g;
-    std::vector<Eigen::VectorXd> n;
-    double norm = 0.0;
-  };
-  Signature signature(const Form& form, const std::vector<double>& start) const;
-  Signature signature(const std::vector<const Form*>& forms, const std::vector<std::vector<double>>& params) const;
-  double inner(const Signature& a, const Signature& b) const;
-
-  const Fitter& fitter_;
-  const Fit& fit_;
-  std::vector<int> trials_;
-  std::vector<Eigen::VectorXd> r_;
-  std::vector<Eigen::MatrixXd> G_, N_, C_, D_;  // D_ inverted
-  Eigen::MatrixXd S_, common_;                  // inverted; with and without the records' own scales
-  std::vector<Eigen::Index> shared_;            // columns of G_ that are instruments' gains
-  Eigen::VectorXd instrument_;                  // pull of their prior where the fit stands
-};
-
-struct NotTestable {
+/// What the score test said of an effect, and what came of it.
+struct Screened {
   Effect effect;
-  std::string why, needs;
-  bool hidden = false;  // by the inputs altogether: it cannot be named. Else a condition is lacking, and it stays as a rival
+  std::string form;        // that of the best start
+  double gain = 0.0;       // fall of chi2 that it promises, against the noise as measured; NaN: a line, judged in the spectrum
+  double masked = 0.0;     // share of its signature that a refit of the baseline hides
+  std::string what;        // fitted, or why not
 };
 
-/// From the inputs alone: effects of the rig that these trials could not show. `full_scale_noise` is 1 % of full scale.
-std::vector<NotTestable> lint(const RigModel& model, const std::vector<Form>& forms, double masked, double testable);
+struct ScreenSummary {
+  std::vector<Score> chosen;      // starts of the forms to be fitted, against the noise as it was known then
+  std::vector<Screened> effects;  // every effect of the rig, when all fits are done
+};
+
+/// Further effects beside `from` that are worth a fit: of `options.most` effects at most, `options.forms` forms each.
+std::vector<Score> promising(const Candidates& sets, const Fit& from, const ScreenOptions& options);
+ScreenSummary screen(const Candidates& sets, const ScreenOptions& options);
+/// Every effect of the rig by the best of its score tests against the baseline, and what came of it; `p`: above it a line is one of chance.
+std::vector<Screened> screened(const Candidates& sets, const ScreenOptions& options, double p);
 
 }  // namespace filum::reconcile

@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "reconcile/transform.h"
+
 namespace filum::reconcile {
 
 Structure structure_of(const std::vector<Eigen::VectorXd>& white, int parameters, int length) {
@@ -222,20 +224,49 @@ double chi2_tail(double x, int freedom) {
   return std::min(1.0, sum);
 }
 
+namespace {
+
+constexpr std::size_t kPlaces = 4000, kMostPlaces = 400'000;  // frequencies in which a line is looked for; the second in long records
+constexpr Eigen::Index kLongRecord = 20'000;                  // samples, from which one transform stands for a sum at each frequency
+constexpr double kManySums = 5e7;
+
+/// What a sinusoid of free phase takes off the sum of squares, at each frequency.
+std::vector<double> sinusoids(const Eigen::VectorXd& time, const Eigen::VectorXd& r, const std::vector<double>& frequency) {
+  std::vector<double> out(frequency.size(), 0.0);
+  for (std::size_t k = 0; k < frequency.size(); ++k) {
+    const double w = 2.0 * std::numbers::pi * frequency[k];
+    double sc = 0, ss = 0, sy = 0, cy = 0, cc = 0;
+    for (Eigen::Index n = 0; n < r.size(); ++n) {
+      if (!std::isfinite(r[n])) continue;
+      const double phase = w * (time[n] - time[0]), si = std::sin(phase), co = std::cos(phase);
+      ss += si * si, cc += co * co, sc += si * co, sy += si * r[n], cy += co * r[n];
+    }
+    const double det = ss * cc - sc * sc;
+    if (det <= 1e-6 * (ss + cc) * (ss + cc)) continue;
+    const double a = (sy * cc - cy * sc) / det, b = (cy * ss - sy * sc) / det;
+    out[k] = a * sy + b * cy;
+  }
+  return out;
+}
+
+}  // namespace
+
 Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double high) {
   const Dataset& d = fitter.model().data();
   Line best;
   double span = 0.0, shortest = 1e300;
+  Eigen::Index longest = 0;
   for (const Trial& t : d.trials) {
     span = std::max(span, t.time[t.samples() - 1] - t.time[0]);
     shortest = std::min(shortest, t.time[t.samples() - 1] - t.time[0]);
+    longest = std::max<Eigen::Index>(longest, t.samples());
   }
   const double step = 0.3 / span;
   // a narrow band may lie wholly below the peak of a short record: the background is taken on both sides of it
   const double beside = low > 5.0 ? std::min(8.0 / shortest, 3.0) : step;
   std::vector<double> power, frequency;
   int columns = 0;
-  for (double f = std::max(low - beside, 0.5 * step); f <= high + beside + 1e-12 && frequency.size() < 4000; f += step) frequency.push_back(f);
+  for (double f = std::max(low - beside, 0.5 * step); f <= high + beside + 1e-12 && frequency.size() < (longest < kLongRecord ? kPlaces : kMostPlaces); f += step) frequency.push_back(f);
   power.assign(frequency.size(), 0.0);
   for (std::size_t i = 0; i < d.trials.size(); ++i) {
     if (i >= fit.residual.size() || fit.residual[i].empty()) continue;
@@ -246,20 +277,9 @@ Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double hig
       const Eigen::VectorXd& r = fit.residual[i][c];
       const double dt = (t.time[t.samples() - 1] - t.time[0]) / (t.samples() - 1);
       columns += 2;
-      for (std::size_t k = 0; k < frequency.size(); ++k) {
-        const double w = 2.0 * std::numbers::pi * frequency[k];
-        double sc = 0, ss = 0, sy = 0, cy = 0, cc = 0;
-        for (Eigen::Index n = 0; n < r.size(); ++n) {
-          if (!std::isfinite(r[n])) continue;
-          const double phase = w * (t.time[n] - t.time[0]), si = std::sin(phase), co = std::cos(phase);
-          ss += si * si, cc += co * co, sc += si * co, sy += si * r[n], cy += co * r[n];
-        }
-        const double det = ss * cc - sc * sc;
-        if (det <= 1e-6 * (ss + cc) * (ss + cc)) continue;
-        const double a = (sy * cc - cy * sc) / det, b = (cy * ss - sy * sc) / det;
-        const double psd = o.sigma * o.sigma * o.spectrum(w * dt);
-        power[k] += (a * sy + b * cy) / psd;
-      }
+      const bool many = longest >= kLongRecord && static_cast<double>(r.size()) * static_cast<double>(frequency.size()) > kManySums;
+      const std::vector<double> taken = many ? line_powers(t.time, r, frequency) : sinusoids(t.time, r, frequency);
+      for (std::size_t k = 0; k < frequency.size(); ++k) power[k] += taken[k] / (o.sigma * o.sigma * o.spectrum(2.0 * std::numbers::pi * frequency[k] * dt));
     }
   }
   // what rises towards the end of the band is a slope, no line
@@ -267,6 +287,8 @@ Line strongest_line(const Fitter& fitter, const Fit& fit, double low, double hig
   const double background = std::max(1.0, median(power) / std::max(1.0, columns - 0.7));
   for (std::size_t k = 0; k < power.size(); ++k)
     if (frequency[k] >= low && frequency[k] <= high && top(k) && power[k] / background > best.gain) best = {frequency[k], power[k] / background, columns, background};
+  // of more places noise makes a stronger one: by 2 ln of their number
+  if (frequency.size() > kPlaces) best.gain = std::max(0.0, best.gain - 2.0 * std::log(static_cast<double>(frequency.size()) / static_cast<double>(kPlaces)));
   return best;
 }
 

@@ -51,7 +51,7 @@ TEST(Baseline, AWorseOptimumAtTheGuessIsLeft) {
   const Fit alone = fitter.fit({}, model.guess(), {});
   EXPECT_NEAR(alone.base[0], 1000.0, 20.0);  // one start stays in the dip
   BaselineSummary summary;
-  const Fit best = fit_baseline(fitter, model.guess(), nullptr, 1, {}, summary);
+  const Fit best = best_start(fitter, model.guess(), nullptr, 1, {}, summary);
   EXPECT_NEAR(best.base[0], 5000.0, 50.0);
   EXPECT_LT(best.chi2, 1.0);
   ASSERT_EQ(summary.starts.size(), 3u);
@@ -72,7 +72,7 @@ TEST(Baseline, StartsKeepToThePriorAndAnswersDoNotDependOnThreads) {
   EXPECT_EQ(starts[2][0], 3000.0);
   EXPECT_EQ(starts[1][1], 0.49);  // not free: stays
   BaselineSummary one, two;
-  const Fit a = fit_baseline(fitter, model.guess(), nullptr, 1, {}, one), b = fit_baseline(fitter, model.guess(), nullptr, 3, {}, two);
+  const Fit a = best_start(fitter, model.guess(), nullptr, 1, {}, one), b = best_start(fitter, model.guess(), nullptr, 3, {}, two);
   EXPECT_EQ(a.base, b.base);
   EXPECT_EQ(one.same(), two.same());
 }
@@ -83,7 +83,7 @@ TEST(Baseline, WithNothingFreeThereIsOneStart) {
   const TwoOptima model(d);
   const Fitter fitter(model, unit_noise());
   BaselineSummary summary;
-  EXPECT_EQ(fit_baseline(fitter, model.guess(), nullptr, 1, {}, summary).base[0], 1000.0);
+  EXPECT_EQ(best_start(fitter, model.guess(), nullptr, 1, {}, summary).base[0], 1000.0);
   EXPECT_TRUE(summary.starts.empty());
 }
 
@@ -116,7 +116,7 @@ TEST(Baseline, AStartFiveTimesOffComesBack) {
   noise.output.push_back({1e-4, 0.0, model->full_scale("pull_force"), "stated"});
   const Fitter fitter(*model, noise);
   BaselineSummary summary;
-  const Fit best = fit_baseline(fitter, {0.25}, nullptr, 1, {}, summary);
+  const Fit best = best_start(fitter, {0.25}, nullptr, 1, {}, summary);
   EXPECT_NEAR(best.base[0], 0.25 * 1.015, 0.004);  // every other record 3 % higher
   EXPECT_EQ(summary.same(), 3);
 }

@@ -6,6 +6,7 @@
 
 #include "base/rng.h"
 #include "records.h"
+#include "searched.h"
 #include "reconcile/choose.h"
 #include "reconcile/rivals.h"
 
@@ -88,10 +89,10 @@ TEST(Challenge, EveryFoldTellsItsGapBeforeAndAfter) {
   Folder f;
   const Dataset d = block(f, trials(), 0.4, 0.0);
   const Result r = reconcile(d);
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  ASSERT_EQ(r.folds.size(), 4u);
-  EXPECT_EQ(r.folds[0].trials, (std::vector<std::string>{"c.csv", "d.csv"}));
-  for (const Fold& fold : r.folds) {
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  ASSERT_EQ(r.challenge.folds.size(), 4u);
+  EXPECT_EQ(r.challenge.folds[0].trials, (std::vector<std::string>{"c.csv", "d.csv"}));
+  for (const Fold& fold : r.challenge.folds) {
     EXPECT_GT(fold.gap.before, 1.5) << fold.held;
     EXPECT_NEAR(fold.gap.after, 1.0, 0.2) << fold.held;
   }
@@ -100,28 +101,27 @@ TEST(Challenge, EveryFoldTellsItsGapBeforeAndAfter) {
 /// A sensor that drifts, and relaxation in its place: neither beside the drift nor on held-out records does it do better.
 TEST(Challenge, InstrumentsComeFirst) {
   Options options;
+  const ChallengeOptions rules;
   {
     Folder f;
     const Dataset d = block(f, trials(), 0.0, 0.02);
     const auto model = make_model(d);
     const auto forms = model->all_forms();
-    Search search(*model, forms, options);
-    search.run();
-    const auto relaxation = std::find_if(search.candidates().begin(), search.candidates().end(), [](const Fit& c) { return effects_in(c) == std::vector<Effect>{Effect::viscoelastic_relaxation}; });
-    ASSERT_NE(relaxation, search.candidates().end());
-    const auto first = instruments_not_outdone(search, *relaxation, challenge(search, search.base(), *relaxation, options), options);
+    const Candidates sets = searched(*model, forms, options);
+    const auto relaxation = std::find_if(sets.fitted().begin(), sets.fitted().end(), [](const Fit& c) { return effects_in(c) == std::vector<Effect>{Effect::viscoelastic_relaxation}; });
+    ASSERT_NE(relaxation, sets.fitted().end());
+    const auto first = instruments_not_outdone(sets, *relaxation, challenge(sets, &*relaxation, rules, options), rules, options);
     ASSERT_FALSE(first.empty());
     EXPECT_EQ(effects_in(*first[0]), std::vector<Effect>{Effect::sensor_drift});
   }
   Folder f;
   const Dataset d = block(f, trials(), 0.2, 0.01);
-  options.rules.explained = 0.0;  // whatever an instrument explains
+  options.rules.compare.explained = 0.0;  // whatever an instrument explains
   const auto model = make_model(d);
   const auto forms = model->all_forms();
-  Search search(*model, forms, options);
-  search.run();
-  ASSERT_EQ(effects_in(*search.best(1)), std::vector<Effect>{Effect::viscoelastic_relaxation});
-  EXPECT_TRUE(instruments_not_outdone(search, *search.best(1), challenge(search, search.base(), *search.best(1), options), options).empty());
+  const Candidates sets = searched(*model, forms, options);
+  ASSERT_EQ(effects_in(*sets.best(1)), std::vector<Effect>{Effect::viscoelastic_relaxation});
+  EXPECT_TRUE(instruments_not_outdone(sets, *sets.best(1), challenge(sets, sets.best(1), rules, options), rules, options).empty());
 }
 
 /// Stiffening so strong that the sensor's drift promises less than a fifth of it: instruments are fitted all the same.
@@ -135,12 +135,12 @@ TEST(Challenge, InstrumentsAreFittedHoweverFarTheBestIsAhead) {
   }
   const Result r = reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
   double best = 0.0;
-  for (const Screened& s : r.screened) best = std::max(best, std::isfinite(s.gain) ? s.gain : 0.0);
+  for (const Screened& s : r.screen.effects) best = std::max(best, std::isfinite(s.gain) ? s.gain : 0.0);
   int behind = 0;
-  for (const Screened& s : r.screened)
+  for (const Screened& s : r.screen.effects)
     if (info(s.effect).stage == 0 && s.gain >= 100.0) {  // many times what is asked, whatever the first estimate of the noise was
       EXPECT_EQ(s.what, "fitted") << info(s.effect).name << " " << s.gain << " of " << best;
-      behind += s.gain < r.rules.screen_share * best ? 1 : 0;
+      behind += s.gain < r.rules.screen.share * best ? 1 : 0;
     }
   EXPECT_GE(behind, 1);
 }

@@ -11,11 +11,12 @@ using namespace filum;
 using reconcile::CsvTable;
 
 void check(const CsvTable& table) {
-  if (table.line.size() != table.rows.size()) std::abort();
-  for (const auto& row : table.rows)
-    if (row.size() != table.header.size()) std::abort();
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    for (std::size_t k = 0; k < table.header.size(); ++k) all += table.cell(i, k).size();
+  if (all > (std::size_t{1} << 30)) std::abort();
   for (std::size_t k = 0; k < table.header.size(); ++k)
-    if (table.numbers(static_cast<int>(k)).size() != static_cast<Eigen::Index>(table.rows.size())) std::abort();
+    if (table.numbers(static_cast<int>(k)).size() != static_cast<Eigen::Index>(table.rows())) std::abort();
 }
 
 /// A folder in which every published table is the file `table.csv`.

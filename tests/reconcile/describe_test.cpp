@@ -107,7 +107,7 @@ TEST(Describe, LikenessIsTheWholeTable) {
   fits.push_back(fits[0]);
   fits.back().forms.push_back(fits[1].forms[0]);
   fits.back().params.push_back(fits[1].params[0]);
-  const Likeness all = Screen(fitter, base).likeness({&fits[0], &fits[1], &fits[2], &fits[3]});
+  const Likeness all = ScoreTests(fitter, base).likeness({&fits[0], &fits[1], &fits[2], &fits[3]});
   ASSERT_EQ(all.correlation.rows(), 4);
   ASSERT_EQ(all.masked.size(), 4u);
   EXPECT_TRUE(all.correlation.isApprox(all.correlation.transpose(), 1e-9));

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/rng.h"
-#include "reconcile/screen.h"
+#include "reconcile/score_tests.h"
 
 namespace filum::reconcile {
 namespace fit_test {
@@ -76,7 +76,7 @@ TEST(Fit, TheGainOfASecondInstrumentPromisesNoDrift) {
     const Fit f = fitter.fit({}, model->guess(), {});
     const auto forms = model->all_forms();
     double most = 0.0;
-    for (const Score& s : Screen(fitter, f).all(forms))
+    for (const Score& s : ScoreTests(fitter, f).all(forms))
       if (s.form->effect == Effect::sensor_drift) most = std::max(most, s.gain);
     return most;
   };
@@ -95,7 +95,7 @@ TEST(Fit, AScoreTestBesideAGainPromisesWhatTheFitKeeps) {
   const auto forms = model->all_forms();
   const auto drift = std::find_if(forms.begin(), forms.end(), [](const Form& f) { return f.text == "tip_reach: offset linear in time"; });
   ASSERT_NE(drift, forms.end());
-  const Score s = Screen(fitter, without).score(*drift, drift->starts[0]);
+  const Score s = ScoreTests(fitter, without).score(*drift, drift->starts[0]);
   const Fit with = fitter.fit({&*drift}, without.base, {drift->starts[0]}, {60, 1e-9}, &without);
   EXPECT_GT(s.gain, 10.0);
   EXPECT_NEAR(s.gain / (without.chi2 - with.chi2), 1.0, 0.01);

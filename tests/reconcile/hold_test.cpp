@@ -42,7 +42,7 @@ Result held(double rate, std::uint64_t seed, const Signal& signal, const Altered
 }
 
 const Estimate& value(const Result& r, const std::string& name) {
-  for (const Estimate& e : r.effects.at(0).parameters)
+  for (const Estimate& e : r.decide.effects.at(0).parameters)
     if (e.name == name) return e;
   throw std::runtime_error(name);
 }
@@ -66,19 +66,19 @@ TEST(Hold, TremorHasAllItsPower) {
     const double scale = 12.0 / std::sqrt(square / static_cast<double>(record.size()));
     return [record, scale](double t) { return scale * record.at(static_cast<std::size_t>(std::lround(100.0 * t))); };
   });
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  EXPECT_EQ(r.effects[0].effect, Effect::physiological_tremor);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::physiological_tremor);
   EXPECT_NEAR(value(r, "frequency").value, 9.5, 0.3);
   EXPECT_NEAR(value(r, "rms").value / 12e-6, 1.0, 0.03);
   // it shakes alike in all four records: each holds its own part
-  ASSERT_EQ(r.where.size(), 4u);
+  ASSERT_EQ(r.localise.cells.size(), 4u);
   double sum = 0.0;
-  for (const Cell& c : r.where) {
+  for (const Cell& c : r.localise.cells) {
     EXPECT_NEAR(c.share, 0.25, 0.1) << c.trial;
     sum += c.share;
   }
   EXPECT_NEAR(sum, 1.0, 1e-9);
-  EXPECT_NE(r.where[0].trial, r.where[1].trial);
+  EXPECT_NE(r.localise.cells[0].trial, r.localise.cells[1].trial);
 }
 
 /// Power at 4 Hz that no effect of the catalogue makes, in one record of four: there it is said to be, and resampled records do not all show it.
@@ -96,20 +96,20 @@ TEST(Hold, UnnamedPowerIsFoundInTheRecordThatHasIt) {
     const double scale = record++ == 1 ? 1350.0 : 0.0;
     return [path, scale](double t) { return scale * path.at(static_cast<std::size_t>(std::lround(100.0 * t))); };
   });
-  ASSERT_EQ(r.verdict, "unknown") << r.sentence;
-  ASSERT_FALSE(r.where.empty());
-  EXPECT_GT(r.where[0].share, 0.9);
-  ASSERT_EQ(r.shape.size(), 1u);
-  EXPECT_GT(r.shape[0].stability, 0.4);
-  EXPECT_LT(r.shape[0].stability, 1.0);
+  ASSERT_EQ(r.decide.verdict, "unknown") << r.decide.sentence;
+  ASSERT_FALSE(r.localise.cells.empty());
+  EXPECT_GT(r.localise.cells[0].share, 0.9);
+  ASSERT_EQ(r.describe.shape.size(), 1u);
+  EXPECT_GT(r.describe.shape[0].stability, 0.4);
+  EXPECT_LT(r.describe.shape[0].stability, 1.0);
 }
 
 /// Between the frequencies of a grid of 0.3 cycles a record a sine would lose 1 - sin(x)/x.
 TEST(Hold, APulseHasItsAmplitude) {
   for (const double f : {1.2, 1.206}) {
     const Result r = held(100.0, 4, [f](Rng& rng) { return sine(rng, f, 10.0); });
-    ASSERT_EQ(r.verdict, "effect") << r.sentence;
-    EXPECT_EQ(r.effects[0].effect, Effect::pulsation);
+    ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+    EXPECT_EQ(r.decide.effects[0].effect, Effect::pulsation);
     EXPECT_NEAR(value(r, "amplitude").value / 10e-6, 1.0, 0.015);
     EXPECT_NEAR(value(r, "frequency").value, f, 0.001);
   }
@@ -118,8 +118,8 @@ TEST(Hold, APulseHasItsAmplitude) {
 /// Sampled 60 times a second 60.05 Hz goes round 1.25 times in a record, of which the slow drift takes a part.
 TEST(Hold, HumFoldedToACycleOfTheRecordHasItsAmplitude) {
   const Result r = held(60.0, 5, [](Rng& rng) { return sine(rng, 60.05, 12.0); });
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  EXPECT_EQ(r.effects[0].effect, Effect::mains_hum);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::mains_hum);
   const Estimate& a = value(r, "amplitude");
   EXPECT_NEAR(a.value / 12e-6, 1.0, 0.06);
   EXPECT_LT(a.low, 12e-6);
@@ -131,27 +131,27 @@ TEST(Hold, BreathIsNotHumFoldedByTheSampling) {
     const auto heart = sine(rng, 1.56, 11.0), breath = sine(rng, 0.235, 8.0);
     return [=](double t) { return heart(t) + breath(t); };
   });
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  ASSERT_EQ(r.effects.size(), 1u);
-  EXPECT_EQ(r.effects[0].effect, Effect::pulsation);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  ASSERT_EQ(r.decide.effects.size(), 1u);
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::pulsation);
 }
 
 TEST(Hold, RecordsThatAreHeldOutChooseAndFitNothing) {
   const Signal hum = [](Rng& rng) { return sine(rng, 50.0, 9.0); };
   const Result r = held(130.0, 5, hum, [](double x) { return x; }), other = held(130.0, 5, hum, [](double x) { return std::clamp(1.7 * x, -12.0, 12.0); });
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  ASSERT_EQ(r.effects.size(), 1u);
-  ASSERT_EQ(other.effects.size(), 1u) << "clipped where nobody may look";
-  EXPECT_EQ(r.sentence, other.sentence);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  ASSERT_EQ(r.decide.effects.size(), 1u);
+  ASSERT_EQ(other.decide.effects.size(), 1u) << "clipped where nobody may look";
+  EXPECT_EQ(r.decide.sentence, other.decide.sentence);
   EXPECT_EQ(value(r, "amplitude").value, value(other, "amplitude").value);
   EXPECT_EQ(value(r, "amplitude").high, value(other, "amplitude").high);
-  EXPECT_EQ(r.noise.output[0].sigma, other.noise.output[0].sigma);
-  EXPECT_EQ(r.fit.after, other.fit.after);
-  EXPECT_NE(r.held_out.after, other.held_out.after);
+  EXPECT_EQ(r.fit.noise.output[0].sigma, other.fit.noise.output[0].sigma);
+  EXPECT_EQ(r.decide.gap.after, other.decide.gap.after);
+  EXPECT_NE(r.challenge.gap.after, other.challenge.gap.after);
 }
 
 const Screened& screened_of(const Result& r, Effect effect) {
-  for (const Screened& s : r.screened)
+  for (const Screened& s : r.screen.effects)
     if (s.effect == effect) return s;
   throw std::runtime_error("not screened");
 }
@@ -162,20 +162,20 @@ TEST(Hold, DetectionIsByRepetitionsOfAStillHand) {
   int low = 0, middling = 0;
   for (const std::uint64_t seed : {11, 12, 13, 14, 15, 16}) {
     const Result r = held(100.0, seed, still);
-    ASSERT_TRUE(r.detection.has_value());
-    EXPECT_EQ(r.verdict, "agree");
-    EXPECT_EQ(r.detection->repetitions, 500);
-    EXPECT_TRUE(std::is_sorted(r.detection->null_scores.begin(), r.detection->null_scores.end()));
-    low += r.detection->p < 0.05 ? 1 : 0;
-    middling += r.detection->p < 0.9 ? 1 : 0;
-    EXPECT_EQ(r.screened.size(), effects_of(Rig::tip_hold).size());
-    for (const Screened& s : r.screened) EXPECT_EQ(s.what.rfind("not fitted", 0) == 0, s.effect != Effect::sensor_lag && s.effect != Effect::sensor_drift) << info(s.effect).name << ": " << s.what;
+    ASSERT_TRUE(r.detect.has_value());
+    EXPECT_EQ(r.decide.verdict, "agree");
+    EXPECT_EQ(r.detect->repetitions, 500);
+    EXPECT_TRUE(std::is_sorted(r.detect->null_scores.begin(), r.detect->null_scores.end()));
+    low += r.detect->p < 0.05 ? 1 : 0;
+    middling += r.detect->p < 0.9 ? 1 : 0;
+    EXPECT_EQ(r.screen.effects.size(), effects_of(Rig::tip_hold).size());
+    for (const Screened& s : r.screen.effects) EXPECT_EQ(s.what.rfind("not fitted", 0) == 0, s.effect != Effect::sensor_lag && s.effect != Effect::sensor_drift) << info(s.effect).name << ": " << s.what;
   }
   EXPECT_LE(low, 1);
   EXPECT_GE(middling, 2);
   const Result r = held(130.0, 5, [](Rng& rng) { return sine(rng, 50.0, 2.7); });
-  EXPECT_LE(r.detection->p, 2.0 / 501.0 + 1e-12);
-  EXPECT_GT(r.detection->score, r.detection->null_scores.back());
+  EXPECT_LE(r.detect->p, 2.0 / 501.0 + 1e-12);
+  EXPECT_GT(r.detect->score, r.detect->null_scores.back());
   EXPECT_EQ(screened_of(r, Effect::mains_hum).what, "fitted");
   EXPECT_GT(screened_of(r, Effect::mains_hum).gain, 50.0);
   EXPECT_EQ(screened_of(r, Effect::sensor_lag).what.rfind("these trials could not show it: ", 0), 0u);
@@ -184,33 +184,33 @@ TEST(Hold, DetectionIsByRepetitionsOfAStillHand) {
 /// The place of a beat is learnt in one half of the records and explains the other; of one that stops it does not.
 TEST(Hold, WithoutRecordsHeldOutHalvesJudgeEachOther) {
   const Result whole = held(100.0, 7, [](Rng& rng) { return sine(rng, 1.2, 10.0); });
-  ASSERT_EQ(whole.verdict, "effect");
-  EXPECT_NE(whole.held_out_how.find("taken from one half of every record and judged in the other"), std::string::npos) << whole.held_out_how;
-  EXPECT_NE(whole.held_out.before, whole.fit.before);
-  EXPECT_GT(whole.held_out.before, 1.8);
-  EXPECT_LT(whole.held_out.after, 1.1);
+  ASSERT_EQ(whole.decide.verdict, "effect");
+  EXPECT_NE(whole.challenge.how.find("taken from one half of every record and judged in the other"), std::string::npos) << whole.challenge.how;
+  EXPECT_NE(whole.challenge.gap.before, whole.decide.gap.before);
+  EXPECT_GT(whole.challenge.gap.before, 1.8);
+  EXPECT_LT(whole.challenge.gap.after, 1.1);
   // a beat that stops: the second half puts it anywhere, and so explains nothing of the first
   const Result stops = held(100.0, 7, [](Rng& rng) {
     const auto beat = sine(rng, 1.2, 10.0);
     return [=](double t) { return t < 12.5 ? beat(t) : 0.0; };
   });
-  ASSERT_EQ(stops.verdict, "effect") << stops.sentence;
-  EXPECT_LT(stops.fit.after, 1.1);
-  EXPECT_GT(stops.held_out.after, 1.3);
+  ASSERT_EQ(stops.decide.verdict, "effect") << stops.decide.sentence;
+  EXPECT_LT(stops.decide.gap.after, 1.1);
+  EXPECT_GT(stops.challenge.gap.after, 1.3);
 }
 
 TEST(Hold, WhatIsLeftIsWithoutTheLine) {
   const Result r = held(130.0, 5, [](Rng& rng) { return sine(rng, 50.0, 9.0); });
-  ASSERT_EQ(r.verdict, "effect");
+  ASSERT_EQ(r.decide.verdict, "effect");
   const auto rms = [](const Fit& f) { return std::sqrt(f.residual[0][0].squaredNorm() / static_cast<double>(f.residual[0][0].size())); };
-  EXPECT_GT(rms(r.before), 7e-6);
-  EXPECT_NEAR(rms(r.after), 4e-6, 0.2e-6);
+  EXPECT_GT(rms(r.decide.before), 7e-6);
+  EXPECT_NEAR(rms(r.decide.after), 4e-6, 0.2e-6);
 }
 
 TEST(Hold, AClippedBottomHasItsOwnLimit) {
   const Result r = held(100.0, 9, [](Rng&) { return [](double) { return 0.0; }; }, {}, -2.0);
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  EXPECT_EQ(r.effects[0].effect, Effect::saturation);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::saturation);
   const Estimate limit = value(r, "limit");
   EXPECT_NEAR(limit.value, -2e-6, 1e-9);
   EXPECT_LT(limit.low, limit.value);
@@ -225,8 +225,8 @@ TEST(Hold, ProgressIsToldAndItCanBeCancelled) {
   const Result r = held(100.0, 2, still, {}, -1e9, options);
   EXPECT_GE(shares.size(), 4u);
   EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
-  EXPECT_EQ(r.verdict, "agree");
-  EXPECT_NE(r.sentence.find("would change this"), std::string::npos) << r.sentence;
+  EXPECT_EQ(r.decide.verdict, "agree");
+  EXPECT_NE(r.decide.sentence.find("would change this"), std::string::npos) << r.decide.sentence;
   options.cancelled = [] { return true; };
   EXPECT_THROW(held(100.0, 2, still, {}, -1e9, options), Cancelled);
 }

@@ -74,19 +74,19 @@ Result solve(const std::function<double(double, int)>& more, int seed = 4) {
 }
 
 bool fitted(const Result& r, Effect e) {
-  return std::any_of(r.tried.begin(), r.tried.end(), [&](const Tried& t) { return std::find(t.effects.begin(), t.effects.end(), e) != t.effects.end(); });
+  return std::any_of(r.decide.tried.begin(), r.decide.tried.end(), [&](const Tried& t) { return std::find(t.effects.begin(), t.effects.end(), e) != t.effects.end(); });
 }
 
 /// A ripple of the angle, four to the period, falls where 50.1 Hz is folded to: it is no hum. The same line with a phase of its own in every record is.
 TEST(InStep, WhatFollowsTheMotionIsNoHum) {
   const Result ripple = solve([](double t, int i) { return 40.0 * std::cos(2.0 * kPi * (0.1 * t + (i < 3 ? 0.0 : 2.0))); });
-  EXPECT_FALSE(fitted(ripple, Effect::mains_hum)) << ripple.sentence;
+  EXPECT_FALSE(fitted(ripple, Effect::mains_hum)) << ripple.decide.sentence;
   const double phase[] = {0.3, 2.5, 4.4, 1.1, 5.3, 3.4};
   const Result hum = solve([&](double t, int i) { return 40.0 * std::cos(2.0 * kPi * 50.1 * t + phase[i]); });
-  ASSERT_EQ(hum.verdict, "effect") << hum.sentence;
-  EXPECT_EQ(hum.effects[0].effect, Effect::mains_hum);
+  ASSERT_EQ(hum.decide.verdict, "effect") << hum.decide.sentence;
+  EXPECT_EQ(hum.decide.effects[0].effect, Effect::mains_hum);
   // the strain's line, not the mean with a pressure that has none; and a frequency is as sure as the clock, not as a gain
-  for (const Estimate& e : hum.effects[0].parameters) {
+  for (const Estimate& e : hum.decide.effects[0].parameters) {
     const double truth = e.name == "frequency" ? 50.1 : 40.0;
     EXPECT_LE(e.low, truth) << e.name;
     EXPECT_GE(e.high, truth) << e.name;

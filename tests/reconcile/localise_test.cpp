@@ -45,7 +45,7 @@ std::vector<Share> shares_of(There there, double line = 0.0) {
     }
     base.residual.push_back({r});
   }
-  return localise_by(*model, base, noise);
+  return shares_of(*model, base, noise);
 }
 
 Share largest(const std::vector<Share>& all, const std::string& axis) {

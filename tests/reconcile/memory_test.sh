@@ -1,6 +1,6 @@
 #!/bin/bash
 # Datasets as large as the test's generator makes them (a still hand: 12 records, 45,000 rows; a block: 10 records, 15,000 rows; a blade whose tissue is
-# meshed) are reconciled below 1 GB of resident memory. Usage: memory_test.sh FILUM ROOT [LIMIT_MB]
+# meshed) and a still hand's record of four million rows (1 kHz for over an hour) are reconciled below 1 GB of resident memory. Usage: memory_test.sh FILUM ROOT [LIMIT_MB]
 filum=$1 root=$2 limit=${3:-1000}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -27,12 +27,20 @@ for run in a:1 c:4 e:2 g:8; do
   awk -F, 'NR == 1 { print "t,z,F"; next } { printf "%s,%.6f,%.6f\n", $1, -$2, -$3 }' "$work/block/${run%:*}.csv" >"$work/blade/${run%:*}.csv"
 done
 
+# noise from a generator that costs nothing, and a heart beat of 1.2 Hz
+mkdir "$work/long"
+sed -e '/^trials:/,$d' -e 's/, noise: "4 um"//' "$work/hand/experiment.yaml" >"$work/long/experiment.yaml"
+printf 'trials:\n  - { file: r.csv, protocol: { support: free } }\n' >>"$work/long/experiment.yaml"
+awk 'BEGIN { print "t,x,y,z"; s = 1; for (i = 0; i < 4000000; ++i) { w = 9 * sin(0.00754 * i); r = ""; for (a = 0; a < 3; ++a) { s = (s * 16807) % 2147483647; r = r sprintf(",%.3f", w + s / 1e8 - 10.7) } printf "%.3f%s\n", i / 1000, r } }' >"$work/long/r.csv"
+
 python3 - "$filum" "$work" "$limit" "$root" <<'PY'
 import resource, subprocess, sys
 filum, work, limit, root = sys.argv[1:]
-for name in ("hand", "block", "blade"):
+for name in ("hand", "block", "blade", "long"):
     done = subprocess.run([filum, "reconcile", f"{work}/{name}", "--out", f"{work}/out-{name}"], capture_output=True, text=True, cwd=root)
     most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024  # the largest child so far
+    if name == "long" and not ("pulsation" in done.stdout and "thinned to one in 67" in open(f"{work}/out-long/report.json").read()):
+        sys.exit(f"long: {done.stdout} {done.stderr}")
     print(name, done.stdout.split("\n")[0], f"{most:.0f} MB at most so far")
     if done.returncode != 0:
         sys.exit(f"{name} failed: {done.stderr}")

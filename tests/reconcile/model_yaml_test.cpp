@@ -18,9 +18,9 @@ struct Written {
     t.time = Eigen::VectorXd::LinSpaced(10, 0.0, 1.0);
     t.specimen = {{"length", 0.06}, {"width", 0.05}, {"height", 0.02}, {"blade_length", 0.014}, {"blade_width", 0.007}};
     d.trials.push_back(t);
-    r.verdict = "effect";
-    r.baseline = {{"youngs_modulus", "Pa", 1000.0, 900.0, 1100.0}, {"poissons_ratio", "-", 0.45, 0.44, 0.46}};
-    for (const Effect e : effects) r.effects.push_back({e, "Yeoh", {{"c20_over_c10", "-", 3.0, 2.0, 4.0}}});
+    r.decide.verdict = "effect";
+    r.decide.baseline = {{"youngs_modulus", "Pa", 1000.0, 900.0, 1100.0}, {"poissons_ratio", "-", 0.45, 0.44, 0.46}};
+    for (const Effect e : effects) r.decide.effects.push_back({e, "Yeoh", {{"c20_over_c10", "-", 3.0, 2.0, 4.0}}});
   }
   YamlNode read() const { return YamlNode::parse(model_yaml(d, r, "filum"), "model.yaml"); }
   Dataset d;
@@ -39,11 +39,11 @@ TEST(ModelYaml, ABladesLawGoesWithTheTissuesOwnStrain) {
   EXPECT_GT(square, 0.01);
   // the values of the mesh, where the blade's own solver accepted the name
   Written meshed = w;
-  meshed.r.confirmation.emplace();
-  meshed.r.confirmation->holds = true;
-  meshed.r.confirmation->values = {{Effect::strain_stiffening, "Yeoh", {{"c20_over_c10", "-", 5.0, 4.0, 6.0}}}};
+  meshed.r.confirm.emplace();
+  meshed.r.confirm->holds = true;
+  meshed.r.confirm->values = {{Effect::strain_stiffening, "Yeoh", {{"c20_over_c10", "-", 5.0, 4.0, 6.0}}}};
   EXPECT_EQ(meshed.read().items("effects").at(0).map("parameters").map("c20_over_c10").number("value"), 5.0);
-  meshed.r.confirmation->holds = false;
+  meshed.r.confirm->holds = false;
   EXPECT_EQ(meshed.read().items("effects").at(0).map("parameters").map("c20_over_c10").number("value"), 3.0);
 }
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/rng.h"
-#include "reconcile/search.h"
+#include "searched.h"
 
 namespace filum::reconcile {
 namespace needle_test {
@@ -85,11 +85,10 @@ TEST(Needle, EveryInstantReadOffARecordIsCounted) {
   EXPECT_GE(further, 2);
   EXPECT_EQ(form->instants, further);
   const Options options;
-  Search search(*model, forms, options);
-  search.run();
-  for (const Fit& f : search.candidates())
+  const Candidates sets = searched(*model, forms, options);
+  for (const Fit& f : sets.fitted())
     if (f.forms.size() == 1 && f.forms[0]->effect == Effect::layer_rupture) {
-      EXPECT_GT(search.bic(f), search.bic(search.base())) << "noise passes for a layer";
+      EXPECT_GT(sets.bic(f), sets.bic(sets.base())) << "noise passes for a layer";
     }
 }
 

@@ -47,18 +47,18 @@ TEST(NextExperiment, WhatItProposesTellsTheRivalsApart) {
   Folder f;
   write(f, 150.0);
   const Result before = solve(f);
-  ASSERT_EQ(before.verdict, "ambiguous") << before.sentence;
+  ASSERT_EQ(before.decide.verdict, "ambiguous") << before.decide.sentence;
   ASSERT_TRUE(before.next.has_value());
   const bool slower = before.next->protocol == "the first trial ten times slower", faster = before.next->protocol == "the first trial ten times faster";
   ASSERT_TRUE(slower || faster) << before.next->protocol;
   EXPECT_GE(before.next->chance, 0.8);
-  EXPECT_NE(before.sentence.find("What would: "), std::string::npos);
+  EXPECT_NE(before.decide.sentence.find("What would: "), std::string::npos);
   Folder g;
   write(g, 150.0, slower ? 600.0 : 6.0);
   const Result after = solve(g);
-  ASSERT_EQ(after.verdict, "effect") << after.sentence;
-  ASSERT_EQ(after.effects.size(), 1u);
-  EXPECT_EQ(after.effects[0].effect, Effect::sensor_lag);
+  ASSERT_EQ(after.decide.verdict, "effect") << after.decide.sentence;
+  ASSERT_EQ(after.decide.effects.size(), 1u);
+  EXPECT_EQ(after.decide.effects[0].effect, Effect::sensor_lag);
 }
 
 }  // namespace next_experiment_test

@@ -94,7 +94,7 @@ TEST(Noise, WhatAFilmAddsIsPartOfIt) {
     Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
     if (sd > 0.0)
       for (Trial& t : d.trials) t.tracked["displacement"] = sd;
-    return reconcile(d).noise.output.at(0);
+    return reconcile(d).fit.noise.output.at(0);
   };
   EXPECT_NEAR(noise(0.0, 0.001, "").sigma / 1e-6, 1.0, 0.15);
   const OutputNoise film = noise(0.7e-6, 0.001, "");

@@ -1,4 +1,4 @@
-foreach(name baseline challenge describe hereditary dataset full_needle full_pull full_solver full_tube hardware hold localise model_yaml needle next_experiment numerics plausible rigs screen workflow fit noise in_step)
+foreach(name baseline challenge confirm csv_table describe hereditary dataset full_needle full_pull full_solver full_tube hardware hold localise model_yaml needle next_experiment numerics plausible rigs lint thin transform workflow fit noise in_step)
   filum_test(reconcile/${name})
 endforeach()
 # reference solutions of the test's generator: SUNDIALS, where it is (libsundials-dev; FILUM_REFERENCE=libfilum_reference.so generate.py ...)

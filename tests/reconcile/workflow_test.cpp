@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -43,18 +44,18 @@ TEST(Workflow, NamesRelaxationWithItsParameters) {
   write_block(f, 0.4, 1);
   const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
   const Result r = reconcile(d);
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  ASSERT_EQ(r.effects.size(), 1u);
-  EXPECT_EQ(r.effects[0].effect, Effect::viscoelastic_relaxation);
-  EXPECT_NEAR(r.effects[0].parameters[0].value, 0.4, 0.04);
-  EXPECT_NEAR(r.effects[0].parameters[1].value, 2.0, 0.3);
-  EXPECT_GT(r.fit.before, 2.0);
-  EXPECT_NEAR(r.fit.after, 1.0, 0.1);
-  EXPECT_NEAR(r.baseline[0].value, 1000.0, 50.0);
-  ASSERT_TRUE(r.detection.has_value());
-  EXPECT_LT(r.detection->p, 0.006);  // 2/401: no repetition of the baseline reaches it
-  EXPECT_EQ(r.noise.output[0].from, "replicates");
-  EXPECT_NEAR(r.noise.output[0].sigma, 0.03e-3, 0.003e-3);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  ASSERT_EQ(r.decide.effects.size(), 1u);
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::viscoelastic_relaxation);
+  EXPECT_NEAR(r.decide.effects[0].parameters[0].value, 0.4, 0.04);
+  EXPECT_NEAR(r.decide.effects[0].parameters[1].value, 2.0, 0.3);
+  EXPECT_GT(r.decide.gap.before, 2.0);
+  EXPECT_NEAR(r.decide.gap.after, 1.0, 0.1);
+  EXPECT_NEAR(r.decide.baseline[0].value, 1000.0, 50.0);
+  ASSERT_TRUE(r.detect.has_value());
+  EXPECT_LT(r.detect->p, 0.006);  // 2/401: no repetition of the baseline reaches it
+  EXPECT_EQ(r.fit.noise.output[0].from, "replicates");
+  EXPECT_NEAR(r.fit.noise.output[0].sigma, 0.03e-3, 0.003e-3);
 }
 
 TEST(Workflow, NamesNothingWhereNothingIsMissing) {
@@ -62,9 +63,9 @@ TEST(Workflow, NamesNothingWhereNothingIsMissing) {
     Folder f;
     write_block(f, 0.0, seed);
     const Result r = solve(f);
-    EXPECT_EQ(r.verdict, "agree") << r.sentence;
-    EXPECT_TRUE(r.effects.empty());
-    EXPECT_GT(r.detection->p, 0.01);
+    EXPECT_EQ(r.decide.verdict, "agree") << r.decide.sentence;
+    EXPECT_TRUE(r.decide.effects.empty());
+    EXPECT_GT(r.detect->p, 0.01);
   }
 }
 
@@ -76,18 +77,18 @@ TEST(Workflow, AWeakEffectIsNamedByItsChanceAndNoiseIsNot) {
     Folder f;
     write_block(f, 0.0, seed);
     const Result r = solve(f);
-    EXPECT_EQ(r.verdict, "agree") << seed;
-    rare += r.detection->chance < 0.2 ? 1 : 0;
+    EXPECT_EQ(r.decide.verdict, "agree") << seed;
+    rare += r.detect->chance < 0.2 ? 1 : 0;
   }
   EXPECT_LE(rare, 6);  // of 12, 2.4 expected: more than 6 once in 250 times
   Folder f;
   write_block(f, 0.0, 6, 0.2, 0.0065);  // of nine sets tried (three slopes, three seeds) the one whose evidence lies between
   const Result r = solve(f);
   const Rules rules;
-  ASSERT_EQ(r.verdict, "effect") << r.sentence << " chance " << r.detection->chance;
-  EXPECT_EQ(r.effects[0].effect, Effect::sensor_drift);
-  EXPECT_LT(r.tried[0].evidence, 0.0);
-  EXPECT_GT(r.tried[0].evidence, -rules.accept_evidence);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence << " chance " << r.detect->chance;
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::sensor_drift);
+  EXPECT_LT(r.decide.tried[0].evidence, 0.0);
+  EXPECT_GT(r.decide.tried[0].evidence, -rules.compare.accept_evidence);
 }
 
 TEST(Workflow, OneTrialWithoutReplicatesIsSolvedAndSaidSo) {
@@ -100,9 +101,9 @@ TEST(Workflow, OneTrialWithoutReplicatesIsSolvedAndSaidSo) {
   EXPECT_NE(notices.find("one trial only"), std::string::npos) << notices;
   EXPECT_NE(notices.find("no replicates"), std::string::npos) << notices;
   const Result r = reconcile(d);
-  EXPECT_EQ(r.held_out_how, "nothing can be held out");
-  EXPECT_EQ(r.noise.output[0].from, "fast part");
-  EXPECT_NE(r.verdict, "agree");
+  EXPECT_EQ(r.challenge.how, "nothing can be held out");
+  EXPECT_EQ(r.fit.noise.output[0].from, "fast part");
+  EXPECT_NE(r.decide.verdict, "agree");
 }
 
 /// A block that loses a quarter of its stiffness at once, half way: no law of the catalogue.
@@ -113,15 +114,15 @@ TEST(Workflow, AnUnknownEffectIsDescribedAndNotForced) {
   for (const auto& [name, speed] : std::vector<std::pair<std::string, double>>{{"a.csv", 1}, {"b.csv", 1}, {"c.csv", 8}, {"d.csv", 8}})
     f.write(name, block_csv([&, v = speed](double t, double u, int) { return 5.0 * u * (t * v > 9.0 ? 0.75 : 1.0) + 0.03 * rng.normal(); }, speed));
   const Result r = solve(f);
-  EXPECT_EQ(r.verdict, "unknown") << r.sentence;
-  EXPECT_TRUE(r.effects.empty());
-  ASSERT_FALSE(r.shape.empty());
-  EXPECT_GT(r.shape[0].stability, 0.6);
+  EXPECT_EQ(r.decide.verdict, "unknown") << r.decide.sentence;
+  EXPECT_TRUE(r.decide.effects.empty());
+  ASSERT_FALSE(r.describe.shape.empty());
+  EXPECT_GT(r.describe.shape[0].stability, 0.6);
   // a step is no term of the list: the load's product with time comes nearest to it (force or displacement, which are alike)
-  EXPECT_TRUE(std::any_of(r.shape.begin(), r.shape.end(), [](const Term& t) { return (t.name == "output*time" || t.name == "displacement*time") && t.stability > 0.5; }));
-  ASSERT_FALSE(r.where.empty());
-  EXPECT_NE(r.sentence.find("it follows " + r.shape[0].name), std::string::npos) << r.sentence;
-  EXPECT_NE(r.sentence.find("would change this"), std::string::npos);
+  EXPECT_TRUE(std::any_of(r.describe.shape.begin(), r.describe.shape.end(), [](const Term& t) { return (t.name == "output*time" || t.name == "displacement*time") && t.stability > 0.5; }));
+  ASSERT_FALSE(r.localise.cells.empty());
+  EXPECT_NE(r.decide.sentence.find("it follows " + r.describe.shape[0].name), std::string::npos) << r.decide.sentence;
+  EXPECT_NE(r.decide.sentence.find("would change this"), std::string::npos);
 }
 
 TEST(Workflow, WritesTheReportOfTheContract) {
@@ -129,7 +130,7 @@ TEST(Workflow, WritesTheReportOfTheContract) {
   write_block(f, 0.4, 2);
   const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
   const Result r = reconcile(d);
-  write_report(d, r, f.file("out"), "test");
+  EXPECT_EQ(write_report(d, r, {f.file("out"), "test"}).files, (std::vector<std::string>{"report.html", "model.yaml", "report.json"}));
   const auto j = nlohmann::json::parse(std::ifstream(f.file("out/report.json")));
   for (const char* key : {"format", "dataset", "rig", "verdict", "effects", "baseline", "rivals", "gap", "where", "not_testable", "partial", "next_experiment", "model_written", "seconds"})
     EXPECT_TRUE(j.contains(key)) << key;
@@ -170,6 +171,32 @@ TEST(Workflow, WritesTheReportOfTheContract) {
   EXPECT_NE(page.find("3 of 3 starts ended at the same optimum"), std::string::npos);
 }
 
+TEST(Workflow, EveryStageTellsItsOptionsAndWhatItFound) {
+  Folder f;
+  write_block(f, 0.4, 2);
+  const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
+  Options options;
+  options.rules.screen.share = 0.11;
+  options.rules.challenge.folds = 2;
+  const auto j = report_json(d, reconcile(d, options));
+  std::map<std::string, nlohmann::ordered_json> stages;
+  std::string order;
+  for (const auto& s : j["stages"]) stages[s["stage"]] = s, order += s["stage"].get<std::string>() + ", ";
+  EXPECT_EQ(order, "lint, noise, baseline, screen, fit, detect, challenge, decide, localise, describe, next experiment, write, ");
+  for (const auto& [name, s] : stages) EXPECT_TRUE(s["options"].is_object() && s["found"].is_object() && (name == "write" || !s["options"].empty())) << name;
+  EXPECT_EQ(stages["screen"]["options"]["share"], 0.11);
+  EXPECT_EQ(stages["challenge"]["options"]["folds"], 2);
+  EXPECT_EQ(stages["lint"]["found"]["not_testable"], j["not_testable"].size());
+  EXPECT_EQ(stages["baseline"]["found"]["starts"], 3);
+  EXPECT_EQ(stages["fit"]["found"]["sets"], j["tried"].size());
+  EXPECT_GE(stages["fit"]["found"]["fits"], stages["screen"]["found"]["starts"]);
+  EXPECT_EQ(stages["detect"]["found"]["p"], j["detection"]["p"]);
+  EXPECT_EQ(stages["localise"]["found"]["trial"], j["where"][0]["trial"]);
+  EXPECT_EQ(stages["challenge"]["found"]["after"], j["gap"]["held_out"]["after"]);
+  EXPECT_EQ(stages["decide"]["found"]["effects"][0], j["effects"][0]["name"]);
+  EXPECT_EQ(stages["write"]["found"]["files"].size(), 3u);
+}
+
 TEST(Workflow, RecordsThatAreHeldOutChooseAndFitNothing) {
   std::vector<Result> two;
   for (const double times : {1.0, 1.7}) {
@@ -181,14 +208,14 @@ TEST(Workflow, RecordsThatAreHeldOutChooseAndFitNothing) {
     f.write("d.csv", block_csv([&](double, double u, int) { return times * 4.0 * u; }, 8));
     two.push_back(solve(f));
   }
-  ASSERT_FALSE(two[0].tried.empty());
-  ASSERT_FALSE(two[1].tried.empty());
-  EXPECT_EQ(two[0].tried[0].effects, two[1].tried[0].effects);
-  EXPECT_EQ(two[0].tried[0].explained, two[1].tried[0].explained);
-  EXPECT_EQ(two[0].noise.output[0].full_scale, two[1].noise.output[0].full_scale);
-  EXPECT_EQ(two[0].baseline_alone[0].value, two[1].baseline_alone[0].value);
-  EXPECT_EQ(two[0].noise.output[0].sigma, two[1].noise.output[0].sigma);
-  EXPECT_NE(two[0].held_out.after, two[1].held_out.after);
+  ASSERT_FALSE(two[0].decide.tried.empty());
+  ASSERT_FALSE(two[1].decide.tried.empty());
+  EXPECT_EQ(two[0].decide.tried[0].effects, two[1].decide.tried[0].effects);
+  EXPECT_EQ(two[0].decide.tried[0].explained, two[1].decide.tried[0].explained);
+  EXPECT_EQ(two[0].fit.noise.output[0].full_scale, two[1].fit.noise.output[0].full_scale);
+  EXPECT_EQ(two[0].baseline.alone[0].value, two[1].baseline.alone[0].value);
+  EXPECT_EQ(two[0].fit.noise.output[0].sigma, two[1].fit.noise.output[0].sigma);
+  EXPECT_NE(two[0].challenge.gap.after, two[1].challenge.gap.after);
 }
 
 TEST(Workflow, ProgressRisesWithTheFits) {
@@ -207,8 +234,8 @@ TEST(Workflow, WhereNothingIsMissingTheSentenceSaysWhatWouldChangeIt) {
   Folder f;
   write_block(f, 0.0, 2);
   const Result r = reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
-  EXPECT_EQ(r.verdict, "agree");
-  EXPECT_NE(r.sentence.find("An effect that lowers BIC by 10 and changes a record by 0.6 % of full scale would change this"), std::string::npos) << r.sentence;
+  EXPECT_EQ(r.decide.verdict, "agree");
+  EXPECT_NE(r.decide.sentence.find("An effect that lowers BIC by 10 and changes a record by 0.6 % of full scale would change this"), std::string::npos) << r.decide.sentence;
 }
 
 TEST(Workflow, ThreadsDoNotChangeTheResult) {

@@ -1,6 +1,6 @@
 // What the inputs alone say of the effects of a rig: some they hide altogether, others only lack a condition and stay as rivals.
 
-#include "reconcile/screen.h"
+#include "reconcile/lint.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "records.h"
 
 namespace filum::reconcile {
-namespace screen_test {
+namespace lint_test {
 
 /// Of a block pressed at one rate, n samples over 20 s.
 std::vector<NotTestable> lint_of_block(int n, const std::string& trials) {
@@ -18,7 +18,7 @@ std::vector<NotTestable> lint_of_block(int n, const std::string& trials) {
   const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
   const auto model = make_model(d);
   const Rules rules;
-  return lint(*model, model->all_forms(), rules.masked, rules.testable);
+  return lint(*model, model->all_forms(), rules.lint).not_testable;
 }
 
 const NotTestable* find(const std::vector<NotTestable>& all, Effect e) {
@@ -29,7 +29,7 @@ const NotTestable* find(const std::vector<NotTestable>& all, Effect e) {
 
 const std::string kCompression = "  - { file: a.csv, protocol: { mode: compression, rate: \"1 mm/s\" } }\n";
 
-TEST(Screen, WhatLacksAConditionStaysAsARival) {
+TEST(Lint, WhatLacksAConditionStaysAsARival) {
   const auto all = lint_of_block(200, kCompression);
   for (const Effect e : {Effect::poroelastic_drainage, Effect::platen_friction, Effect::tension_compression_asymmetry}) {
     ASSERT_NE(find(all, e), nullptr) << info(e).name;
@@ -40,7 +40,7 @@ TEST(Screen, WhatLacksAConditionStaysAsARival) {
   EXPECT_EQ(find(all, Effect::viscoelastic_relaxation), nullptr) << "twenty seconds with a hold show it";
 }
 
-TEST(Screen, WhatTheInputsHideCannotBeNamed) {
+TEST(Lint, WhatTheInputsHideCannotBeNamed) {
   const auto coarse = lint_of_block(15, kCompression);  // less than one a second
   for (const Effect e : {Effect::pulsation, Effect::mains_hum}) {
     ASSERT_NE(find(coarse, e), nullptr) << info(e).name;
@@ -53,5 +53,5 @@ TEST(Screen, WhatTheInputsHideCannotBeNamed) {
   EXPECT_TRUE(find(all, Effect::rig_compliance)->hidden) << find(all, Effect::rig_compliance)->why;
 }
 
-}  // namespace screen_test
+}  // namespace lint_test
 }  // namespace filum::reconcile
