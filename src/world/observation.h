@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -67,7 +68,7 @@ struct Observation {
   NeedleObservation needle;
   TissueObservation tissue;
   int n_contacts = 0;             // self-contacts
-  double min_gap = 0.0;           // [m], smallest surface distance between strands (negative: compressed)
+  double min_gap = std::numeric_limits<double>::infinity();  // [m], smallest surface distance between strands (negative: compressed)
   int newton_iterations = 0;
   double residual = 0.0;          // [N], largest unbalanced nodal force
   std::uint64_t overruns = 0;     // steps that took longer than dt so far

@@ -7,7 +7,7 @@
 namespace filum {
 namespace {
 
-void observe_thread(const Model& model, const State& s, const ImplicitRod& rod, Observation& o) noexcept {
+void observe_thread(const Model& model, const State& s, Observation& o) noexcept {
   const RodState& t = s.thread;
   o.n_nodes = t.n;
   o.positions.leftCols(t.n) = t.x.leftCols(t.n);
@@ -26,7 +26,6 @@ void observe_thread(const Model& model, const State& s, const ImplicitRod& rod, 
     o.contact[static_cast<std::size_t>(std::min(b.j, t.n - 1))] += b.force;
   }
   o.n_contacts = static_cast<int>(s.memory.self.size());
-  o.min_gap = rod.contact().smallest_distance(t.x) - 2.0 * model.thread.radius;
 }
 
 void observe_parted(const RodState& t, Observation& o) noexcept {
@@ -73,10 +72,10 @@ void size_observation(const Model& model, Observation& o) {
   o.radius = model.thread.radius;
 }
 
-void fill_observation(const Model& model, const State& s, const ImplicitRod& rod, const RodStepSummary& solver, Observation& o) noexcept {
+void fill_observation(const Model& model, const State& s, const RodStepSummary& solver, Observation& o) noexcept {
   o.step = s.step;
   o.time = static_cast<double>(s.step) * model.step.dt;
-  observe_thread(model, s, rod, o);
+  observe_thread(model, s, o);
   observe_parted(s.thread, o);
   observe_tools(s, o);
   observe_pellets(s, o);

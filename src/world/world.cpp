@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/stage_clock.h"
 #include "world/brain_scene.h"
@@ -55,6 +56,7 @@ struct World::Impl {
   void part_overloaded_thread() noexcept;
   void start_brain();
   void step_brain(const Inputs& inputs) noexcept;
+  double smallest_gap() const noexcept;
   void observe() noexcept;
 
   double tip_gap(int tool) const noexcept {
@@ -143,6 +145,7 @@ void World::step(const Inputs& inputs) noexcept {
   impl_->step_thread();
   impl_->step_pellets();
   impl_->part_overloaded_thread();
+  impl_->observation.min_gap = impl_->smallest_gap();
   adapt_resolution(impl_->model->resolution, impl_->model->description.capacity,
                    impl_->model->thread.radius, impl_->rod.contact(), impl_->rod.obstacles,
                    impl_->state.thread, impl_->state.memory);
@@ -299,9 +302,12 @@ void World::Impl::part_overloaded_thread() noexcept {
   }
 }
 
+/// As long as the contacts' pairs name its edges: before their number changes. [m]
+double World::Impl::smallest_gap() const noexcept { return rod.contact().smallest_distance(state.thread.x) - 2.0 * model->thread.radius; }
+
 void World::Impl::observe() noexcept {
   const StageScope stage("observation");
-  fill_observation(*model, state, rod, solver, observation);
+  fill_observation(*model, state, solver, observation);
   if (needle) needle->observe(state, observation);
   if (brain) brain->observe(state.brain, state.valid, observation);
   observation.state_hash = hash_state(state);
@@ -317,6 +323,7 @@ void World::restore(const State& state) {
   if (impl_->brain) impl_->brain->match(state.brain);
   if (impl_->needle) impl_->needle->match(state);
   impl_->observation.n_events = 0;
+  impl_->observation.min_gap = std::numeric_limits<double>::infinity();
   impl_->observe();
 }
 

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 
+#include "collision/segment_distance.h"
 #include "world/state.h"
 #include "world/task_folder.h"
 
@@ -46,6 +48,25 @@ TEST(WildHands, EveryOtherTask) {
     ++tried;
   }
   EXPECT_GT(tried, 15);
+}
+
+/// The thread's edges are numbered anew as they are halved and joined; the gap that is told is that of the edges the contacts knew.
+TEST(WildHands, StrandsAreNotSaidToBeNearerThanAnyTwoEdgesAre) {
+  World world(load_model(FILUM_SOURCE_DIR, "knot-throw"));
+  WildHands hands(3, world.description());
+  int renumbered = 0;
+  for (int k = 0; k < 80; ++k) {
+    const int before = world.state().thread.n;
+    world.step(hands.next(world.observation()));
+    const RodState& t = world.state().thread;
+    renumbered += t.n != before ? 1 : 0;
+    double least = 1.0;
+    for (int i = 0; i + 3 < t.n; ++i)
+      for (int j = i + 2; j + 1 < t.n; ++j)
+        if (t.alive[i] != 0 && t.alive[j] != 0) least = std::min(least, closest_points(t.x.col(i), t.x.col(i + 1), t.x.col(j), t.x.col(j + 1)).distance);
+    ASSERT_GE(world.observation().min_gap, least - 2.0 * world.observation().radius - 1e-9) << "step " << k;
+  }
+  EXPECT_GT(renumbered, 5);
 }
 
 TEST(WildHands, SameSeedSameHandsAndTheyHit) {

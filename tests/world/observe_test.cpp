@@ -12,12 +12,11 @@ struct Seen {
   std::shared_ptr<const Model> model = load_model(FILUM_SOURCE_DIR, "knot-square", "");
   World world{model};
   State s = world.state();
-  ImplicitRod rod{model->thread, model->contact, model->description.capacity, model->description.n_tools};
   RodStepSummary solver;
   Observation o;
 
   Seen() { size_observation(*model, o); }
-  void look() { fill_observation(*model, s, rod, solver, o); }
+  void look() { fill_observation(*model, s, solver, o); }
 };
 
 TEST(Observe, ThreadAsItIs) {
