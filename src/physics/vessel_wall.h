@@ -110,6 +110,8 @@ class VesselWall {
   double depth_at(const WallPoint& at) const noexcept;
   /// Fits the boxes of the surface to a state; crossing() and near() answer for the state given last.
   void refit(const WallState& state) noexcept;
+  /// May some of the surface lie in this box [m]?
+  bool near(const Vec3& low, const Vec3& high) const noexcept;
   /// First crossing of the segment from a to b [m] with the surface, after the fraction `from`. Either side counts.
   WallCrossing crossing(const WallState& state, const Vec3& a, const Vec3& b, double from = 0.0) const noexcept;
   /// Material point of the surface nearest to q within `reach`; fraction is then the distance [m], negative inside the tissue.

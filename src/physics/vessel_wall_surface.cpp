@@ -80,6 +80,12 @@ void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, co
 
 }  // namespace
 
+bool VesselWall::near(const Vec3& low, const Vec3& high) const noexcept {
+  found_.clear();
+  tree_.overlaps({low, high}, found_);
+  return !found_.empty();
+}
+
 WallCrossing VesselWall::crossing(const WallState& state, const Vec3& a, const Vec3& b, double from) const noexcept {
   WallCrossing best;
   found_.clear();
