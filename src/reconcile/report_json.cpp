@@ -118,7 +118,7 @@ Json ambiguity_json(const Result& r) {
     Json one = Json::array();
     for (Eigen::Index j = 0; j < n; ++j) one.push_back(finite(r.alike.correlation(i, j)));
     rows.push_back(std::move(one));
-    sets.push_back(names(r.alike_sets[k]));
+    sets.push_back(named(r.alike_sets[k]));
     masked.push_back(finite(r.alike.masked[k]));
   }
   return {{"correlation", finite(r.alike.correlation(0, 1))}, {"masked", finite(r.alike.masked[0])}, {"sets", sets}, {"correlations", rows}, {"masked_each", masked}};
