@@ -26,13 +26,17 @@ bool parted(const RodState& t, double arc) noexcept {
 }
 
 /// What a touch does to the wall in its coming step. The thread is no post: a wall that comes on at 5 mm/s would be dented by one of 200 N/m, where the thread weighs
-/// 0.1 ug and moves off. It bears at most twice what it bore, in the next step as much again.
+/// 0.1 ug and moves off. It bears at most twice what it bore, in the next step as much again; what is light just weighs.
 void lean(VesselWall& wall, const WallState& w, const ThreadTouch& touch, const RodTether& t, double stiffness) noexcept {
+  if (touch.load < kLightest) {
+    wall.add_load(w, touch.at, -t.force);
+    return;
+  }
   WallSlip push;
   push.along = -touch.normal;
   push.force = touch.load;
   push.stick = stiffness;
-  push.high = 2.0 * touch.load + kLightest;
+  push.high = 2.0 * touch.load;
   wall.add_load(w, touch.at, Vec3::Zero(), Mat3::Zero(), push);
   if (t.limit <= 0.0) return;
   RodTether rub = t;
@@ -79,6 +83,7 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
                            const std::vector<RodTether>& on_thread) noexcept {
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   int kept = 0;
+  n_come_out_ = 0;
   for (int k = 0; k < s.n; ++k) {
     const auto index = static_cast<std::size_t>(first_ + k);
     if (index >= on_thread.size()) break;
@@ -90,7 +95,10 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
     const double height = (x - wall.position(w, touch.at)).dot(touch.normal);
     const WallCrossing near = wall.nearest(w, x, 0.1e-3);
     const bool same_side = near.found && near.normal.dot(touch.normal) > 0.3 && height > -kShallow;  // deep within, the far wall may be nearest
-    if (height >= 0.0 && !(same_side && near.fraction < 0.0)) continue;  // outside again
+    if (height >= 0.0 && !(same_side && near.fraction < 0.0)) {  // outside again
+      come_out_[static_cast<std::size_t>(n_come_out_++)] = touch.arc;
+      continue;
+    }
     lean(wall, w, touch, t, stiffness);
     if (same_side) {  // slides along it
       touch.at = near.point;
@@ -100,6 +108,7 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
   }
   s.n = kept;
   sweep(wall, w, s, tracks, thread, 0.0);
+  n_come_out_ = 0;
 }
 
 void VesselContact::overtake(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread) noexcept {
@@ -138,6 +147,8 @@ void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState&
   if (!c.found || (now - before).dot(c.normal) >= 0.0 || in_track(tracks, whole, arc)) return;
   for (int k = 0; k < s.n; ++k)
     if (std::abs(s.touches[static_cast<std::size_t>(k)].arc - arc) < kOneTouch) return;
+  for (int k = 0; k < n_come_out_; ++k)
+    if (std::abs(come_out_[static_cast<std::size_t>(k)] - arc) < kOneTouch) return;
   ThreadTouch touch;
   touch.arc = arc;
   touch.at = c.point;

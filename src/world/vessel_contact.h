@@ -48,6 +48,8 @@ class VesselContact {
 
   std::array<Push, 216> pushes_{};  // up to twelve of each of three balls on each jaw of three tools
   int n_pushes_ = 0;
+  std::array<double, kMostTouches> come_out_{};  // [m], arcs of touches that end in this step: on their way out they pass the wall from within
+  int n_come_out_ = 0;
   Points before_;              // [m], nodes at the start of the step
   int first_ = 0;              // of its tethers
 };
