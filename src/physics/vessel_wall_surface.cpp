@@ -179,4 +179,15 @@ WallPoint VesselWall::locate(const WallState& state, const Vec3& q, const WallPo
   return p;
 }
 
+int VesselWall::settle(WallState& state, int most_steps, double speed) {
+  int k = 0;
+  while (k < most_steps) {
+    ++k;
+    const WallSummary r = step(state);
+    if (!r.sound || state.v.colwise().norm().maxCoeff() < speed) break;
+  }
+  state.v.setZero();
+  return k;
+}
+
 }  // namespace filum
