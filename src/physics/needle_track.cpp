@@ -21,6 +21,16 @@ double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_l
 
 void load_wall(VesselWall& wall, const WallState& w, const WallPoint& at, const RodTether& t, double dt) noexcept {
   WallSlip slip;
+  if (t.across != Vec3::Zero()) {  // on a surface it rubs the way it slips
+    const Vec3 rub = t.force.dot(t.along) * t.along + t.force.dot(t.across) * t.across;
+    slip.along = rub.norm() > 0.0 ? Vec3(-rub.normalized()) : t.along;
+    slip.stick = t.stick;
+    slip.high = t.limit;
+    slip.low = -t.limit;
+    slip.force = std::min(rub.norm(), t.limit);
+    wall.add_load(w, at, -t.force - slip.force * slip.along, t.stiffness, slip);
+    return;
+  }
   slip.along = t.along;
   slip.stick = t.stick;
   slip.high = t.limit;

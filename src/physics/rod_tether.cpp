@@ -14,6 +14,18 @@ Vec3 offset(const RodTether& t, const Points& x) noexcept {
 
 bool resists(const RodTether& t, double u) noexcept { return t.stick > 0.0 && !(t.one_way && u < 0.0); }
 bool slips(const RodTether& t, double u) noexcept { return t.stick * std::abs(u) > t.limit; }
+bool in_plane(const RodTether& t) noexcept { return t.across != Vec3::Zero(); }
+Vec3 slip_of(const RodTether& t, const Vec3& d) noexcept { return d.dot(t.along) * t.along + d.dot(t.across) * t.across; }
+
+bool lifted(const RodTether& t, const Vec3& d) noexcept { return in_plane(t) && d.dot(t.along.cross(t.across)) > 0.0; }
+
+Mat3 plane_stiffness(const RodTether& t, const Vec3& d) noexcept {
+  const Vec3 slip = slip_of(t, d);
+  const Mat3 plane = t.along * t.along.transpose() + t.across * t.across.transpose();
+  const double length = slip.norm();
+  if (!slips(t, length)) return t.stick * plane;
+  return t.limit / length * (plane - slip * slip.transpose() / (length * length));
+}
 
 }  // namespace
 
@@ -31,8 +43,8 @@ double RodTethers::energy(const Points& x, double dt) const noexcept {
   double sum = 0.0;
   for (const RodTether& t : list) {
     const Vec3 d = offset(t, x);
-    sum += 0.5 * d.dot(t.stiffness * d);
-    const double u = d.dot(t.along), bend = t.stick > 0.0 ? t.limit / t.stick : 0.0;
+    if (!lifted(t, d)) sum += 0.5 * d.dot(t.stiffness * d);
+    const double u = in_plane(t) ? slip_of(t, d).norm() : d.dot(t.along), bend = t.stick > 0.0 ? t.limit / t.stick : 0.0;
     if (!resists(t, u)) continue;
     sum += slips(t, u) ? t.limit * (std::abs(u) - 0.5 * bend) : 0.5 * t.stick * u * u;
     sum += 0.5 * t.drag / dt * (u - t.start) * (u - t.start);
@@ -43,8 +55,13 @@ double RodTethers::energy(const Points& x, double dt) const noexcept {
 void RodTethers::add_gradient(const Points& x, double dt, Eigen::Matrix4Xd& gradient) noexcept {
   for (RodTether& t : list) {
     const Vec3 d = offset(t, x);
-    t.force = -(t.stiffness * d);
-    if (const double u = d.dot(t.along); resists(t, u)) {
+    t.force = lifted(t, d) ? Vec3(Vec3::Zero()) : Vec3(-(t.stiffness * d));
+    if (in_plane(t)) {
+      const Vec3 slip = slip_of(t, d);
+      const double length = slip.norm();
+      t.force -= slips(t, length) ? Vec3(t.limit / length * slip) : Vec3(t.stick * slip);
+      t.slid = std::max(0.0, length - t.limit / t.stick);
+    } else if (const double u = d.dot(t.along); resists(t, u)) {
       const double dry = slips(t, u) ? std::copysign(t.limit, u) : t.stick * u;
       t.force -= (dry + t.drag / dt * (u - t.start)) * t.along;
       t.slid = u - dry / t.stick;
@@ -56,8 +73,11 @@ void RodTethers::add_gradient(const Points& x, double dt, Eigen::Matrix4Xd& grad
 
 void RodTethers::add_stiffness(const Points& x, double dt, const ChainSlots& chain, BlockCholesky& matrix) const noexcept {
   for (const RodTether& t : list) {
-    Mat3 k = t.stiffness;
-    if (const double u = offset(t, x).dot(t.along); resists(t, u)) {
+    const Vec3 d = offset(t, x);
+    Mat3 k = lifted(t, d) ? Mat3(Mat3::Zero()) : t.stiffness;
+    if (in_plane(t)) {
+      k += plane_stiffness(t, d);
+    } else if (const double u = d.dot(t.along); resists(t, u)) {
       const double along = (slips(t, u) ? 0.0 : t.stick) + t.drag / dt;
       k += along * t.along * t.along.transpose();
     }

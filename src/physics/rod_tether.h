@@ -6,6 +6,8 @@
 // K is the stiffness of what holds the point, condensed to it: for a body of a few coordinates q with stiffness H, K = (J H^-1 J^T)^-1, so
 // that thread and body move as if they were solved together (static condensation; exact for a linear body). phi is Coulomb friction
 // along the thread with an elastic stick range (friction.h): k_t u^2/2 up to the limit, |u| times the limit beyond; c is a speed term.
+// With `across` the tether is a surface: friction acts in the plane of both directions, u being the length of the slip (isotropic Coulomb), without drag, and
+// K only pushes, along x across.
 // A ring stays where it is and the thread slides through it: its material coordinate goes back by what was slid.
 // Neglects: bending moments at a held point. Test: rod_tether_test.
 
@@ -22,7 +24,8 @@ struct RodTether {
   Vec3 anchor = Vec3::Zero();        // [m], frame W, at the end of the step
   Mat3 stiffness = Mat3::Zero();     // [N/m], positive semidefinite
   Vec3 along = Vec3::Zero();         // unit, direction of growing arc; zero: no friction
-  double limit = 0.0;                // [N], Coulomb friction along the thread
+  Vec3 across = Vec3::Zero();        // unit, normal to `along`: surface in their plane; zero: a ring
+  double limit = 0.0;                // [N], Coulomb friction
   double stick = 0.0;                // [N/m], before it slips
   double drag = 0.0;                 // [N s/m]
   double start = 0.0;                // [m], u at the start of the step
@@ -31,7 +34,7 @@ struct RodTether {
   int edge = 0;
   double s = 0.0;
   Vec3 force = Vec3::Zero();         // [N], on the thread
-  double slid = 0.0;                 // [m], of the thread through the ring, towards growing arc
+  double slid = 0.0;                 // [m], of the thread through the ring, towards growing arc; in a plane its length
 };
 
 class RodTethers {

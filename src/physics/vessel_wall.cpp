@@ -139,7 +139,9 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   }
   meetings_ = WallMeetings(mesh_, kMeetingReach * longest_move_, kMeetingShare * squeeze);
   loads_.resize(kMostLoads);
-  for (Points* p : {&x_, &target_, &residual_, &elastic_, &trial_elastic_, &trial_x_, &trial_residual_, &push_, &trial_push_}) p->setZero(3, n);
+  for (Points* p : {&x_, &target_, &residual_, &elastic_, &trial_elastic_, &trial_x_, &trial_residual_, &push_, &trial_push_, &own_.force, &trial_own_.force, &last_.x, &last_.force})
+    p->setZero(3, n);
+  last_.soundness.resize(static_cast<std::size_t>(mesh_.n_elements()));
   turn_.resize(static_cast<std::size_t>(n));
   direction_ = Vector::Zero(3 * n);
   turned_ = steer_ = Eigen::VectorXf::Zero(3 * n);
@@ -157,17 +159,6 @@ WallState VesselWall::first_state() const {
   s.history.s.setZero(3 * s.x.cols(), options_.memory);
   s.history.y = s.history.s;
   return s;
-}
-
-int VesselWall::settle(WallState& state, int most_steps, double speed) {
-  int k = 0;
-  while (k < most_steps) {
-    ++k;
-    const WallSummary r = step(state);
-    if (!r.sound || state.v.colwise().norm().maxCoeff() < speed) break;
-  }
-  state.v.setZero();
-  return k;
 }
 
 bool VesselWall::add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness) noexcept {
@@ -204,6 +195,12 @@ int VesselWall::add_push(const WallState& state, const WallPoint& at, const Vec3
   l.limit = limit;
   l.carried = carried - carried.dot(normal) * normal;
   return n_loads_ - 1;
+}
+
+Vec3 VesselWall::Load::moved(const Points& x) const noexcept {
+  Vec3 sum = -at;
+  for (int a = 0; a < 8; ++a) sum += weight[a] * x.col(node[static_cast<std::size_t>(a)]);
+  return sum;
 }
 
 Vec3 VesselWall::Load::answer(const Vec3& moved, double& energy) noexcept {
@@ -266,8 +263,15 @@ double VesselWall::evaluate(const WallState& state) noexcept {
     energy += 0.5 * inertia_[i] * behind.squaredNorm();
     r.col(i) = inertia_[i] * behind;
   }
-  trial_elastic_.setZero();
-  energy += elements_.add_forces(x, state.soundness, trial_elastic_);
+  if (last_.is_of(x, state.soundness)) {
+    trial_own_.force = last_.force;
+    trial_own_.energy = last_.energy;
+  } else {
+    trial_own_.force.setZero();
+    trial_own_.energy = elements_.add_forces(x, state.soundness, trial_own_.force);
+  }
+  energy += trial_own_.energy;
+  trial_elastic_ = trial_own_.force;
   if (pressed_) {
     trial_push_.setZero();
     add_pressure_forces(mesh_, pressure_, x, trial_push_);
@@ -277,9 +281,7 @@ double VesselWall::evaluate(const WallState& state) noexcept {
   r += trial_elastic_;
   for (int k = 0; k < n_loads_; ++k) {
     Load& l = loads_[static_cast<std::size_t>(k)];
-    Vec3 at = -l.at;
-    for (int a = 0; a < 8; ++a) at += l.weight[a] * x.col(l.node[static_cast<std::size_t>(a)]);
-    const Vec3 f = l.answer(at, energy);
+    const Vec3 f = l.answer(l.moved(x), energy);
     for (int a = 0; a < 8; ++a) r.col(l.node[static_cast<std::size_t>(a)]) += l.weight[a] * f;
   }
   for (const int i : mesh_.held) r.col(i).setZero();
@@ -288,7 +290,7 @@ double VesselWall::evaluate(const WallState& state) noexcept {
 
 void VesselWall::gather_springs() noexcept {
   const StageScope stage("wall: springs");
-  springs_.clear();
+  springs_.gather_again();
   for (int k = 0; k < n_loads_; ++k) {
     Load& l = loads_[static_cast<std::size_t>(k)];
     l.in_matrix = l.stiff() && springs_.add({l.node, l.weight, l.present()}, turn_, matrix_);
@@ -400,31 +402,47 @@ bool VesselWall::begin(const WallState& state) noexcept {
   energy_ = evaluate(state);
   if (!std::isfinite(energy_) || trial_residual_.colwise().norm().maxCoeff() > kViolent * options_.tolerance) {  // is it better to start from where it is?
     const double guessed = energy_;
+    take_forces();
     for (int i = 0; i < x_.cols(); ++i)
       if (!held_[static_cast<std::size_t>(i)]) trial_x_.col(i) = state.x.col(i);
     energy_ = evaluate(state);
-    if (!(energy_ < guessed)) {
-      trial_x_ = x_;
-      energy_ = evaluate(state);  // again, for what touches there
+    if (energy_ < guessed) {
+      x_ = trial_x_;
+      take_forces();
+    } else {
+      energy_ = guessed;
+      answer_loads(x_);
     }
-    x_ = trial_x_;
+  } else {
+    take_forces();
   }
   find_frames(x_);
+  springs_.clear();
   gather_springs();
-  residual_ = trial_residual_;
-  elastic_ = trial_elastic_;
-  push_ = trial_push_;
   return std::isfinite(energy_);
+}
+
+/// What was evaluated last is what the wall feels.
+void VesselWall::take_forces() noexcept {
+  push_.swap(trial_push_);
+  residual_.swap(trial_residual_);
+  elastic_.swap(trial_elastic_);
+  own_.force.swap(trial_own_.force);
+  own_.energy = trial_own_.energy;
+}
+
+/// Loads as they are at x, where all else is known already.
+void VesselWall::answer_loads(const Points& x) noexcept {
+  double energy = 0.0;
+  for (int k = 0; k < n_loads_; ++k) loads_[static_cast<std::size_t>(k)].answer(loads_[static_cast<std::size_t>(k)].moved(x), energy);
 }
 
 /// What the line search found is where the wall is now.
 void VesselWall::accept(WallState& state) noexcept {
   add_pair(state.history);
   energy_ = trial_energy_;
-  push_.swap(trial_push_);
   x_.swap(trial_x_);
-  residual_.swap(trial_residual_);
-  elastic_.swap(trial_elastic_);
+  take_forces();
   if (!springs_stale()) return;
   gather_springs();
   count_springs(state.history);
@@ -447,8 +465,7 @@ void VesselWall::iterate(WallState& state, WallSummary& summary) noexcept {
       pairs_.forget();
       ++summary.iterations;
     } else {
-      trial_x_ = x_;
-      evaluate(state);  // pushes as they are here
+      answer_loads(x_);
       return;
     }
   }
@@ -461,9 +478,14 @@ WallSummary VesselWall::step(WallState& state) noexcept {
     iterate(state, summary);
     state.v = (x_ - state.x) / options_.dt;
     state.x = x_;
+    last_.x = x_;
+    last_.soundness = state.soundness;
+    last_.force.swap(own_.force);
+    last_.energy = own_.energy;
   } else {
     state.v.setZero();
   }
+  last_.told = summary.sound;
   state.clamp = clamp_;
   return summary;
 }

@@ -14,6 +14,7 @@
 // State is complete: same state, same loads, same next state. A step allocates nothing.
 // Neglects: viscoelasticity (a damps against the surroundings only), fluid inertia. Tests: vessel_wall_test, vessel_wall_surface_test.
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -110,6 +111,8 @@ class VesselWall {
   double depth_at(const WallPoint& at) const noexcept;
   /// Fits the boxes of the surface to a state; crossing() and near() answer for the state given last.
   void refit(const WallState& state) noexcept;
+  /// May some of the surface lie in this box [m]?
+  bool near(const Vec3& low, const Vec3& high) const noexcept;
   /// First crossing of the segment from a to b [m] with the surface, after the fraction `from`. Either side counts.
   WallCrossing crossing(const WallState& state, const Vec3& a, const Vec3& b, double from = 0.0) const noexcept;
   /// Material point of the surface nearest to q within `reach`; fraction is then the distance [m], negative inside the tissue.
@@ -145,6 +148,7 @@ class VesselWall {
     Mat3 counted;                    // [N/m], as the pairs have it
     Mat3 felt() const noexcept;      // [N/m], as they should
     Mat3 present() const noexcept { return sticks ? Mat3(stiffness + slip.stick * slip.along * slip.along.transpose()) : stiffness; }  // [N/m]
+    Vec3 moved(const Points& x) const noexcept;               // [m], of its place
     Vec3 answer(const Vec3& moved, double& energy) noexcept;  // [N], on the wall
     bool stiff() const noexcept { return one_sided ? pushed > 0.0 : sticks || stiffness.trace() > kStiff; }
   };
@@ -156,6 +160,8 @@ class VesselWall {
   bool begin(const WallState& state) noexcept;
   void iterate(WallState& state, WallSummary& summary) noexcept;
   void accept(WallState& state) noexcept;
+  void take_forces() noexcept;
+  void answer_loads(const Points& x) noexcept;
   double evaluate(const WallState& state) noexcept;  // energy [J] and residual at trial_x_; infinite if an element is inside out
   void precondition(Eigen::VectorXf& b) noexcept;
   void count_springs(const WallHistory& h) noexcept;
@@ -183,6 +189,14 @@ class VesselWall {
   // scratch of a step
   Points x_, target_, residual_, trial_x_, trial_residual_, push_, trial_push_;  // push: of pressure
   Points elastic_, trial_elastic_;    // [N], of the elements and of pressure
+  struct Answer {                     // of the elements alone
+    Points x, force;                  // [m], [N]
+    std::vector<double> soundness;
+    double energy = 0.0;              // [J]
+    bool told = false;
+    bool is_of(const Points& at, const std::vector<double>& sound) const noexcept { return told && std::equal(at.data(), at.data() + at.size(), x.data()) && sound == soundness; }
+  };
+  Answer own_, trial_own_, last_;     // last: where the step before ended
   bool pressed_ = false;
   double energy_ = 0.0, trial_energy_ = 0.0, taken_ = 1.0;  // taken: share of the last direction
   std::vector<Mat3> turn_;

@@ -80,6 +80,12 @@ void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, co
 
 }  // namespace
 
+bool VesselWall::near(const Vec3& low, const Vec3& high) const noexcept {
+  found_.clear();
+  tree_.overlaps({low, high}, found_);
+  return !found_.empty();
+}
+
 WallCrossing VesselWall::crossing(const WallState& state, const Vec3& a, const Vec3& b, double from) const noexcept {
   WallCrossing best;
   found_.clear();
@@ -171,6 +177,17 @@ WallPoint VesselWall::locate(const WallState& state, const Vec3& q, const WallPo
     if (d.cwiseAbs().maxCoeff() < 1e-10) break;
   }
   return p;
+}
+
+int VesselWall::settle(WallState& state, int most_steps, double speed) {
+  int k = 0;
+  while (k < most_steps) {
+    ++k;
+    const WallSummary r = step(state);
+    if (!r.sound || state.v.colwise().norm().maxCoeff() < speed) break;
+  }
+  state.v.setZero();
+  return k;
 }
 
 }  // namespace filum

@@ -125,6 +125,7 @@ double thread_in_lumen(const Model& model, const State& state) {
   const std::vector<Stretch> free = between_bites(state.tissue.tracks, whole);
   double inside = 0.0, arc = t.arc_start;
   for (int i = 0; i + 1 < t.n; arc += t.rest_length[i++]) {
+    if (t.alive[i] == 0) continue;
     const double middle = arc + 0.5 * t.rest_length[i];
     if (std::any_of(free.begin(), free.end(), [&](const Stretch& s) { return middle > s.low && middle < s.high; })) continue;
     const Vec3 q = 0.5 * (t.x.col(i) + t.x.col(i + 1));

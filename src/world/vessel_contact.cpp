@@ -8,12 +8,41 @@ namespace {
 
 constexpr double kDeepest = 30e-6;     // [m], overlap that counts: what has gone deeper comes back as gently
 constexpr double kTrackReach = 0.3e-3;  // [m], of thread on either side of a track that is left alone
+constexpr double kSpacing = 0.1e-3;     // [m], of samples along the thread at most: less than a wall is thick
+constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands for, either way
+constexpr double kShallow = 50e-6;      // [m], half a wall: from deeper within a touch stays where it went in
+constexpr double kLightest = 5e-6;      // [N], half of what the wall's step leaves unbalanced
 constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
 Vec3 at_arc(const RodState& t, double arc) noexcept {
   const auto [edge, f] = locate_arc(t, arc);
   return (1.0 - f) * t.x.col(edge) + f * t.x.col(edge + 1);
+}
+
+bool parted(const RodState& t, double arc) noexcept {
+  const auto [edge, f] = locate_arc(t, arc);
+  return t.alive[edge] == 0 && f > 1e-6 && f < 1.0 - 1e-6;
+}
+
+/// What a touch does to the wall in its coming step. The thread is no post: a wall that comes on at 5 mm/s would be dented by one of 200 N/m, where the thread weighs
+/// 0.1 ug and moves off. It bears at most twice what it bore, in the next step as much again; what is light just weighs.
+void lean(VesselWall& wall, const WallState& w, const ThreadTouch& touch, const RodTether& t, double stiffness) noexcept {
+  if (touch.load < kLightest) {
+    wall.add_load(w, touch.at, -t.force);
+    return;
+  }
+  WallSlip push;
+  push.along = -touch.normal;
+  push.force = touch.load;
+  push.stick = stiffness;
+  push.high = 2.0 * touch.load;
+  wall.add_load(w, touch.at, Vec3::Zero(), Mat3::Zero(), push);
+  if (t.limit <= 0.0) return;
+  RodTether rub = t;
+  rub.stiffness.setZero();
+  rub.force -= t.force.dot(touch.normal) * touch.normal;
+  load_wall(wall, w, touch.at, rub, wall.options().dt);
 }
 
 bool in_track(const TrackState& tracks, double whole, double arc) noexcept {
@@ -42,14 +71,10 @@ void VesselContact::hold(const VesselWall& wall, const WallState& w, const Touch
     t.stiffness = stiffness * touch.normal * touch.normal.transpose();
     const double depth = (t.anchor - at_arc(thread, touch.arc)).dot(touch.normal);
     if (depth > kDeepest) t.anchor -= (depth - kDeepest) * touch.normal;
-    const auto [edge, f] = locate_arc(thread, touch.arc);
-    const Vec3 run = thread.x.col(edge + 1) - thread.x.col(edge), flat = run - run.dot(touch.normal) * touch.normal;
-    if (flat.norm() > 1e-9) {
-      t.along = flat.normalized();
-      t.stick = stiffness;
-      t.limit = friction * touch.load;
-      t.start = (at_arc(thread, touch.arc) - t.anchor).dot(t.along);
-    }
+    t.along = touch.normal.unitOrthogonal();
+    t.across = touch.normal.cross(t.along);
+    t.stick = stiffness;
+    t.limit = friction * touch.load;
     on_thread.push_back(t);
   }
 }
@@ -58,27 +83,60 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
                            const std::vector<RodTether>& on_thread) noexcept {
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   int kept = 0;
+  n_come_out_ = 0;
   for (int k = 0; k < s.n; ++k) {
     const auto index = static_cast<std::size_t>(first_ + k);
     if (index >= on_thread.size()) break;
     ThreadTouch touch = s.touches[static_cast<std::size_t>(k)];
     const RodTether& t = on_thread[index];
-    touch.load = t.force.dot(touch.normal);
-    if (touch.load <= 0.0 || in_track(tracks, whole, touch.arc)) continue;  // outside again
-    load_wall(wall, w, touch.at, t, wall.options().dt);
+    touch.load = std::max(0.0, t.force.dot(touch.normal));
+    if (in_track(tracks, whole, touch.arc) || parted(thread, touch.arc)) continue;
     const Vec3 x = at_arc(thread, touch.arc);
+    const double height = (x - wall.position(w, touch.at)).dot(touch.normal);
     const WallCrossing near = wall.nearest(w, x, 0.1e-3);
-    if (near.found && near.normal.dot(touch.normal) > 0.3) {  // slides along the same side
+    const bool same_side = near.found && near.normal.dot(touch.normal) > 0.3 && height > -kShallow;  // deep within, the far wall may be nearest
+    if (height >= 0.0 && !(same_side && near.fraction < 0.0)) {  // outside again
+      come_out_[static_cast<std::size_t>(n_come_out_++)] = touch.arc;
+      continue;
+    }
+    lean(wall, w, touch, t, stiffness);
+    if (same_side) {  // slides along it
       touch.at = near.point;
       touch.normal = near.normal;
     }
     s.touches[static_cast<std::size_t>(kept++)] = touch;
   }
   s.n = kept;
+  sweep(wall, w, s, tracks, thread, 0.0);
+  n_come_out_ = 0;
+}
+
+void VesselContact::overtake(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread) noexcept {
+  const double farthest = wall.options().dt * w.v.colwise().norm().maxCoeff();
+  if (farthest == 0.0) return;
+  before_.leftCols(thread.n) = thread.x.leftCols(thread.n);
+  sweep(wall, w, s, tracks, thread, farthest);
+}
+
+/// Samples of the thread on their way from before_ to where it is, or, with `reach` [m], of a wall that has just moved by that much at most.
+void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, double reach) const noexcept {
+  const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   double arc = thread.arc_start;
   for (int i = 0; i + 1 < thread.n; arc += thread.rest_length[i++]) {
-    look(wall, w, s, tracks, whole, arc, before_.col(i), thread.x.col(i));
-    look(wall, w, s, tracks, whole, arc + 0.5 * thread.rest_length[i], 0.5 * (before_.col(i) + before_.col(i + 1)), 0.5 * (thread.x.col(i) + thread.x.col(i + 1)));
+    const Vec3 a = before_.col(i), b = before_.col(i + 1), to_a = thread.x.col(i), to_b = thread.x.col(i + 1), beside = Vec3::Constant(reach);
+    if (!wall.near(a.cwiseMin(b).cwiseMin(to_a).cwiseMin(to_b) - beside, a.cwiseMax(b).cwiseMax(to_a).cwiseMax(to_b) + beside)) continue;
+    const int n = thread.alive[i] == 0 ? 1 : static_cast<int>(std::ceil(thread.rest_length[i] / kSpacing));
+    for (int k = 0; k < n; ++k) {
+      const double f = static_cast<double>(k) / n;
+      const Vec3 now = (1.0 - f) * to_a + f * to_b;
+      Vec3 before = (1.0 - f) * a + f * b;
+      if (reach > 0.0) {
+        const WallCrossing near = wall.nearest(w, now, reach);
+        if (!near.found) continue;
+        before = now + wall.options().dt * wall.velocity(w, near.point);
+      }
+      look(wall, w, s, tracks, whole, arc + f * thread.rest_length[i], before, now);
+    }
   }
 }
 
@@ -88,7 +146,9 @@ void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState&
   const WallCrossing c = wall.crossing(w, before, now);
   if (!c.found || (now - before).dot(c.normal) >= 0.0 || in_track(tracks, whole, arc)) return;
   for (int k = 0; k < s.n; ++k)
-    if (std::abs(s.touches[static_cast<std::size_t>(k)].arc - arc) < 20e-6) return;
+    if (std::abs(s.touches[static_cast<std::size_t>(k)].arc - arc) < kOneTouch) return;
+  for (int k = 0; k < n_come_out_; ++k)
+    if (std::abs(come_out_[static_cast<std::size_t>(k)] - arc) < kOneTouch) return;
   ThreadTouch touch;
   touch.arc = arc;
   touch.at = c.point;

@@ -2,11 +2,12 @@
 // Thread and jaws against the surface of the tissue, staggered with its step: forces push back what has come through or into the
 // surface, and the tissue gets the opposite loads.
 //
-// Thread: a node, or the middle of an edge, that crosses the surface inwards in a step is remembered with the place where it crossed
-// (so that it cannot come out on the far side, however fast it goes) and is pushed back out along the normal there, with Coulomb
-// friction, until it is outside. Where a track holds the thread nothing is looked for.
+// Thread: a sample (nodes, and places 0.1 mm apart between them) that crosses the surface inwards by its motion relative to the wall is remembered with the place
+// where it crossed (so that it cannot come out on the far side, however fast it goes) and is pushed back out along the normal there, with Coulomb friction in the
+// surface, until it is above that place again. Thread and wall move in turn: first the thread past the wall as it stands, then the wall past the thread. In the wall's turn
+// a sample x was, as the wall's point p next to it sees it, at x + h v(p). Where a track holds the thread nothing is looked for.
 // Jaws: spheres along them that push the faces they touch along their normals and drag them by friction, within the tissue's own step.
-// Neglects: thickness of the thread, thread across the rim between two samples, jaws faster than their radius a step (75 mm/s).
+// Neglects: thickness of the thread, rims thinner than 0.1 mm between two samples, jaws faster than their radius a step (75 mm/s).
 // Test: vessel_contact_test.
 
 #include <vector>
@@ -29,12 +30,15 @@ class VesselContact {
   void hold(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread, std::vector<RodTether>& on_thread) noexcept;
   void follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
               const std::vector<RodTether>& on_thread) noexcept;
+  /// After the wall's step: thread, at rest or not, that the wall has moved over.
+  void overtake(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread) noexcept;
   /// Jaws at their present poses stand against the wall in its coming step.
   void press(VesselWall& wall, const WallState& w, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states) noexcept;
   /// After that step: adds to `force` [N] and `torque` [N m] on the tools.
   void feel(const VesselWall& wall, std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
 
  private:
+  void sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, double reach) const noexcept;
   void look(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, double whole, double arc, const Vec3& before, const Vec3& now) const noexcept;
 
   struct Push {
@@ -44,6 +48,8 @@ class VesselContact {
 
   std::array<Push, 216> pushes_{};  // up to twelve of each of three balls on each jaw of three tools
   int n_pushes_ = 0;
+  std::array<double, kMostTouches> come_out_{};  // [m], arcs of touches that end in this step: on their way out they pass the wall from within
+  int n_come_out_ = 0;
   Points before_;              // [m], nodes at the start of the step
   int first_ = 0;              // of its tethers
 };

@@ -147,6 +147,7 @@ void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread,
     o.events[static_cast<std::size_t>(o.n_events++)] = {"solver-trouble", -1, summary.residual, "N"};
   wall_.refit(s.wall);
   tracks_.carry_point(wall_, s.wall, s.tracks);
+  contact_.overtake(wall_, s.wall, s.touches, s.tracks, thread);
 }
 
 void VesselScene::observe(const VesselState& s, const RodState& thread, Observation& o) const noexcept {

@@ -16,7 +16,7 @@ struct ThreadTouch {
   Vec3 normal = Vec3::UnitZ();  // outward, when last looked at
   double load = 0.0;           // [N], normal, in the last step
 };
-inline constexpr int kMostTouches = 48;
+inline constexpr int kMostTouches = 96;
 
 struct TouchState {
   std::int32_t n = 0;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "physics/implicit_rod.h"
 
 namespace filum {
@@ -43,6 +45,35 @@ TEST(RodTether, ForceIsMinusTheSlopeOfItsEnergy) {
         EXPECT_NEAR(gradient(c, i), slope, 1e-7) << i << c;
       }
     }
+  }
+}
+
+/// Friction in the plane of a surface: energy and force agree, stuck and slipping any way.
+TEST(RodTether, FrictionInAPlaneIsTheSlopeOfItsEnergy) {
+  RodState s = straight(5, 1e-3);
+  RodTethers tethers(4);
+  for (const double limit : {1e-2, 1e-3}) {  // sticks, slips
+    RodTether t = ring(1.3e-3, limit);
+    t.drag = 0.0;
+    t.stiffness = 200.0 * Vec3::UnitZ() * Vec3::UnitZ().transpose();
+    t.across = Vec3::UnitY();
+    t.anchor = Vec3(1.29e-3, 20e-6, -10e-6);
+    tethers.list = {t};
+    tethers.locate(s);
+    Eigen::Matrix4Xd gradient = Eigen::Matrix4Xd::Zero(4, 9);
+    tethers.add_gradient(s.x, 2e-3, gradient);
+    const RodTether& held = tethers.list[0];
+    EXPECT_NEAR(std::hypot(held.force.x(), held.force.y()), limit > 5e-3 ? 300.0 * std::hypot(10e-6, 20e-6) : limit, 1e-12);
+    EXPECT_NEAR(held.force.y() / held.force.x(), -2.0, 1e-9) << "against the slip";
+    for (int i = 1; i < 3; ++i)
+      for (int c = 0; c < 3; ++c) {
+        constexpr double kStep = 1e-9;
+        Points up = s.x, down = s.x;
+        up(c, i) += kStep;
+        down(c, i) -= kStep;
+        const double slope = (tethers.energy(up, 2e-3) - tethers.energy(down, 2e-3)) / (2.0 * kStep);
+        EXPECT_NEAR(gradient(c, i), slope, 1e-7) << i << c;
+      }
   }
 }
 

@@ -70,4 +70,39 @@ TEST(VesselWallSprings, NothingToCorrectWithoutSprings) {
   EXPECT_EQ(x.maxCoeff(), 1.0f);
 }
 
+/// Springs that come and go among others that stay, more of them in turn than are remembered: as if all were new.
+TEST(VesselWallSprings, KnownAgainIsAsNew) {
+  TubeShape shape;
+  shape.around = 6;
+  shape.along = 3;
+  const VesselMesh mesh = make_tube(shape);
+  std::vector<SlabFactor::Block> blocks;
+  for (int i = 0; i < mesh.n_nodes(); ++i) blocks.push_back({i, i, 4.0 * Mat3::Identity()});
+  for (const auto& nodes : mesh.elements)
+    for (const int i : nodes)
+      for (const int j : nodes)
+        if (i > j) blocks.push_back({i, j, 0.1 * Mat3::Identity()});
+  WallMatrix matrix(mesh, blocks);
+  const std::vector<Mat3> turn(static_cast<std::size_t>(mesh.n_nodes()), Mat3(Eigen::AngleAxisd(0.3, Vec3::UnitY())));
+  WallSprings springs(mesh.n_nodes());
+  const Eigen::VectorXf b = Eigen::VectorXf::LinSpaced(3 * mesh.n_nodes(), -1.0f, 2.0f);
+  for (int round = 0; round < 80; ++round) {
+    WallSprings fresh(mesh.n_nodes());
+    springs.gather_again();
+    for (int k = 0; k < 4; ++k) {
+      const int e = k == 2 ? 3 + round % 5 : 4 * k;
+      const Mat3 stiffness = Vec3(300 + (k == 1 ? round : 0), 200, 100).asDiagonal();
+      for (WallSprings* s : {&springs, &fresh}) ASSERT_TRUE(s->add({mesh.elements[static_cast<std::size_t>(e)], corner_weights(Vec3(0.1 * k, -0.4, 0.6)), stiffness}, turn, matrix));
+    }
+    ASSERT_TRUE(springs.prepare(matrix) && fresh.prepare(matrix));
+    Eigen::VectorXf x = b, y = b;
+    matrix.solve(x);
+    springs.correct(matrix, x);
+    matrix.solve(y);
+    fresh.correct(matrix, y);
+    ASSERT_EQ((x - y).cwiseAbs().maxCoeff(), 0.0f) << round;
+    ASSERT_GT((x - b).cwiseAbs().maxCoeff(), 0.01f);
+  }
+}
+
 }  // namespace vessel_wall_springs_test

@@ -215,6 +215,36 @@ TEST(VesselWall, SameStateSameLoadsSameBits) {
   EXPECT_EQ((a.v - b.v).cwiseAbs().maxCoeff(), 0.0);
 }
 
+/// A wall that has made all steps and one that makes this step only: jerks, friction that sticks and slips, an element that gives way.
+TEST(VesselWall, WhatIsRememberedOfTheLastStepChangesNothing) {
+  VesselWall one = stump();
+  WallState a = one.first_state();
+  Rng rng(5);
+  for (int k = 0; k < 16; ++k) {
+    if (k == 8) a.soundness[20] = 0.3;
+    VesselWall fresh = stump();
+    WallState b = a;
+    std::vector<double> jerk;
+    for (int n = 0; n < 9; ++n) jerk.push_back(rng.normal());
+    const auto drive = [&](VesselWall& w, WallState& s) {
+      w.clear_loads();
+      w.add_load(s, {20, Vec3(0, 0, 1)}, 5e-3 * Vec3(jerk[0], jerk[1], jerk[2]));
+      for (int n = 0; n < 3; ++n) {
+        WallSlip slip;
+        slip.along = Vec3(jerk[3], jerk[4], jerk[5]).normalized();
+        slip.stick = 200.0;
+        slip.high = slip.force = 2e-4;
+        slip.low = -slip.high;
+        w.add_load(s, {18 + n, Vec3(jerk[6], 0, 1)}, Vec3::Zero(), Mat3::Zero(), slip);
+      }
+      w.step(s);
+    };
+    drive(one, a);
+    drive(fresh, b);
+    ASSERT_EQ((a.x - b.x).cwiseAbs().maxCoeff(), 0.0) << k;
+  }
+}
+
 TEST(VesselWall, AStepAllocatesNothing) {
   if (!FILUM_COUNTS_ALLOCATIONS) GTEST_SKIP() << "allocations are not counted under sanitizers";
   VesselWall wall = stump();

@@ -37,6 +37,12 @@ TEST(JoinTest, SameStateSameLeak) {
   EXPECT_EQ(a.flow, b.flow);
 }
 
+int first_within(const RodState& t, double y) {
+  int i = 0;
+  while (t.x(1, i) < y) ++i;
+  return i;
+}
+
 TEST(JoinTest, ThreadLyingInTheLumenIsMeasured) {
   const World w(stumps());
   State s = w.state();
@@ -47,6 +53,10 @@ TEST(JoinTest, ThreadLyingInTheLumenIsMeasured) {
   }
   const double longest = s.thread.rest_length.head(s.thread.n - 1).maxCoeff();
   EXPECT_NEAR(thread_in_lumen(*stumps(), s), 1.2e-3 + 2.4e-3, 3.0 * longest) << "1.2 mm of the first stump, all 2.4 mm of the second";
+  const double whole = thread_in_lumen(*stumps(), s);
+  const int cut = first_within(s.thread, 0.5e-3);
+  s.thread.alive[cut] = 0;
+  EXPECT_NEAR(thread_in_lumen(*stumps(), s), whole - s.thread.rest_length[cut], 1e-12) << "between two ends there is no thread";
   for (int i = 0; i < s.thread.n; ++i) s.thread.x(2, i) = 0.6e-3;
   EXPECT_EQ(thread_in_lumen(*stumps(), s), 0.0) << "beside the vessel";
 }

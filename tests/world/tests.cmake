@@ -2,6 +2,7 @@ foreach(name blade_arm blood_flow brain_scene brain_section cortex falx fixtures
   filum_test(world/${name})
 endforeach()
 filum_test(world/needle_scene)
+filum_test(world/vessel_contact)
 filum_test(world/vessel_scene)
 filum_test(world/end_to_side)
 filum_test(world/wall_file filum_evidence)

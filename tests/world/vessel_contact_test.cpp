@@ -1,0 +1,206 @@
+#include "world/vessel_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/allocation_count.h"
+
+namespace filum {
+namespace vessel_contact_test {
+
+constexpr double kRadius = 0.45e-3;  // [m], outer, of a tube along z whose clamp is at z = 0 and whose cut edge is at 3 mm
+
+VesselWall tube() {
+  WallOptions o;
+  o.tolerance = 1e-7;  // it follows its clamp at once
+  o.max_iterations = 60;
+  return VesselWall(make_tube({}), {{"wall", 1e-4, WallLaw::hooke(300e3, 0.45)}}, o);
+}
+
+/// Along x, across the tube, its middle at `middle`.
+RodState across(const Vec3& middle, int n, double edge) {
+  Points nodes(3, n);
+  for (int i = 0; i < n; ++i) nodes.col(i) = middle + Vec3((i - 0.5 * (n - 1)) * edge, 0, 0);
+  return RodState::from_nodes(nodes, n + 4);
+}
+
+/// A thread that two weak springs hold by its ends, and the tube that comes upon it.
+struct Draped {
+  VesselWall wall = tube();
+  WallState w = wall.first_state();
+  RodState thread;
+  ImplicitRod rod;
+  RodMemory memory;
+  VesselContact contact;
+  TouchState touches;
+  TrackState tracks;
+  std::array<Vec3, 2> anchor;
+  double spring = 1e-3;  // [N/m]
+
+  explicit Draped(double height)
+      : thread(across(Vec3(0, height, 1.5e-3), 31, 0.2e-3)), rod(RodMaterial(), ContactMaterial(), 40), memory(rod.make_memory()), contact(40),
+        anchor{thread.x.col(0), thread.x.col(30)} {
+    wall.refit(w);
+  }
+
+  void step(const Pose& X_WC) {
+    RodStepOptions o;
+    o.dt = wall.options().dt;
+    o.gravity.setZero();
+    wall.clear_loads();
+    rod.tethers.list.clear();
+    for (std::size_t k = 0; k < 2; ++k) {
+      RodTether t;
+      t.arc = k == 0 ? 0.0 : 6e-3;
+      t.anchor = anchor[k];
+      t.stiffness = spring * Mat3::Identity();
+      rod.tethers.list.push_back(t);
+    }
+    contact.hold(wall, w, touches, thread, rod.tethers.list);
+    rod.step(thread, memory, o);
+    contact.follow(wall, w, touches, tracks, thread, rod.tethers.list);
+    wall.place_clamp(0, X_WC);
+    wall.step(w);
+    wall.refit(w);
+    contact.overtake(wall, w, touches, tracks, thread);
+  }
+
+  /// [m], by which the tissue overlaps the thread at most, seen from above; the whole vessel where the thread has got into it.
+  double overlap() const {
+    double worst = 0.0;
+    for (double s = 0.0; s <= 30.0; s += 0.25) {
+      const int i = std::min(29, static_cast<int>(s));
+      const Vec3 x = (1.0 - s + i) * thread.x.col(i) + (s - i) * thread.x.col(i + 1), high = x + Vec3(0, 5e-3, 0);
+      const WallCrossing c = wall.crossing(w, high, x);
+      if (c.found) worst = std::max(worst, (1.0 - c.fraction) * 5e-3);
+    }
+    return worst;
+  }
+};
+
+/// Turned by its clamp about an axis 3.3 mm away, as fast as a clamp is turned over, the tube comes upon a thread at rest and lifts it.
+TEST(VesselContact, AWallThatTurnsTakesThreadAtRestAlong) {
+  Draped d(kRadius + 40e-6);
+  constexpr double kTurn = 1.5 * 2e-3, kArm = 3.3e-3;
+  long taken = 0;
+  for (int k = 1; k <= 90; ++k) {
+    const Quat q(Eigen::AngleAxisd(k * kTurn, Vec3::UnitZ()));
+    const long before = allocations;
+    d.step({q * Vec3(kArm, 0, 0) - Vec3(kArm, 0, 0), q});
+    taken += allocations - before;
+    ASSERT_LT(d.overlap(), 20e-6) << "twice what the wall moves in one; step " << k;
+  }
+  EXPECT_GT(d.thread.x.row(1).maxCoeff(), 0.75e-3) << "lifted from 0.49 mm";
+  if (FILUM_COUNTS_ALLOCATIONS) {
+    EXPECT_EQ(taken, 0);
+  }
+}
+
+/// Flung down on it by springs (0.3 m/s, a third of the way through the vessel in its first step) the thread comes back to rest upon the wall.
+TEST(VesselContact, ThreadFlungAtTheWallComesToRestOnIt) {
+  Draped d(kRadius + 1e-6);
+  for (Vec3& a : d.anchor) a.y() -= 1e-3;
+  d.step({});
+  ASSERT_GT(d.overlap(), 0.3e-3);
+  for (int k = 0; k < 200; ++k) d.step({});
+  EXPECT_LT(d.overlap(), 8e-6);
+  double load = 0.0;
+  for (int k = 0; k < d.touches.n; ++k) load += d.touches.touches[static_cast<std::size_t>(k)].load;
+  const Vec3 pull = d.rod.tethers.list[0].force + d.rod.tethers.list[1].force;
+  EXPECT_NEAR(load, -pull.y(), 0.02 * load) << "carries what the springs pull";
+}
+
+/// Slid along its axis as fast as a clamp slides, the tube carries the thread that lies across it until the springs pull sideways with friction times what
+/// they press it on with; from then on it slides through underneath.
+TEST(VesselContact, AWallThatSlidesCarriesThreadByFriction) {
+  Draped d(kRadius + 1e-6);
+  for (int k = 0; k < 500; ++k) {
+    for (Vec3& a : d.anchor) a.y() -= 2e-6;
+    d.step({});
+  }
+  for (int k = 0; k < 100; ++k) d.step({});
+  ASSERT_GT(d.touches.n, 0);
+  const double start = d.thread.x(2, 15);
+  const auto slide = [&](int from, int to) {
+    for (int k = from + 1; k <= to; ++k) {
+      d.step({Vec3(0, 0, 0.5e-3 * 2e-3 * k), Quat::Identity()});
+      ASSERT_LT(d.overlap(), 8e-6) << "step " << k;
+    }
+  };
+  slide(0, 80);
+  EXPECT_NEAR(d.thread.x(2, 15) - start, 80e-6, 4e-6) << "carried";
+  slide(80, 700);
+  const Vec3 pull = d.rod.tethers.list[0].force + d.rod.tethers.list[1].force;
+  EXPECT_NEAR(pull.z() / pull.y(), d.contact.friction, 0.02 * d.contact.friction) << "Coulomb";
+  EXPECT_LT(d.thread.x(2, 15) - start, 400e-6) << "of 700 um";
+}
+
+/// At half a metre a second a wall of 0.1 mm, and the lumen behind it, go past in one step: the thread still is on the side where it was.
+TEST(VesselContact, AFastWallDoesNotTunnel) {
+  VesselWall wall = tube();
+  WallState w = wall.first_state();
+  RodState thread = across(Vec3(0, kRadius + 20e-6, 1.5e-3), 31, 0.2e-3);
+  VesselContact contact(40);
+  const auto pass = [&](const Vec3& by) {
+    w = wall.first_state();
+    w.x.colwise() += by;
+    w.v.colwise() = Vec3(by / wall.options().dt);
+    wall.refit(w);
+    TouchState touches;
+    contact.overtake(wall, w, touches, {}, thread);
+    return touches;
+  };
+  const TouchState up = pass({0, 1e-3, 0});
+  ASSERT_GT(up.n, 4);
+  for (int k = 0; k < up.n; ++k) {
+    const ThreadTouch& t = up.touches[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(wall.depth_at(t.at), 0.0, 1e-9) << "on the outer surface";
+    EXPECT_GT(t.normal.y(), 0.0);
+  }
+  EXPECT_EQ(pass({0, -1e-3, 0}).n, 0) << "away from it";
+  EXPECT_EQ(pass({0, 15e-6, 0}).n, 0) << "not there yet";
+  thread = across(Vec3(0, 0.4e-3, 3.02e-3), 31, 0.2e-3);
+  const TouchState edge = pass({0, 0, 1e-3});
+  ASSERT_GT(edge.n, 0);
+  EXPECT_GT(edge.touches[0].normal.z(), 0.9) << "on the cut edge";
+}
+
+/// A thread that leads from the lumen over the cut edge, in edges of 1.2 mm, drawn or passed against the rim.
+TEST(VesselContact, ThreadHooksOverARimBetweenItsNodes) {
+  VesselWall wall = tube();
+  WallState w = wall.first_state();
+  wall.refit(w);
+  Points nodes(3, 2);
+  nodes.col(0) = Vec3(0, 0, 3.02e-3);
+  nodes.col(1) = Vec3(0, 1.2e-3, 3.02e-3);
+  RodState thread = RodState::from_nodes(nodes, 4);
+  VesselContact contact(4);
+  std::vector<RodTether> tethers;
+  TouchState touches;
+  contact.hold(wall, w, touches, thread, tethers);
+  thread.x.row(2).array() -= 40e-6;
+  contact.follow(wall, w, touches, {}, thread, tethers);
+  ASSERT_EQ(touches.n, 1);
+  EXPECT_NEAR(touches.touches[0].arc, 0.4e-3, 0.06e-3);
+  EXPECT_GT(touches.touches[0].normal.z(), 0.9);
+}
+
+TEST(VesselContact, NothingIsThereBetweenTwoPieces) {
+  VesselWall wall = tube();
+  WallState w = wall.first_state();
+  RodState thread = across(Vec3(0, kRadius + 20e-6, 1.5e-3), 2, 1.2e-3);
+  VesselContact contact(8);
+  w.x.row(1).array() += 40e-6;
+  w.v.row(1).array() += 40e-6 / wall.options().dt;
+  wall.refit(w);
+  TouchState whole, cut;
+  contact.overtake(wall, w, whole, {}, thread);
+  EXPECT_GT(whole.n, 0);
+  thread.alive[0] = 0;
+  contact.overtake(wall, w, cut, {}, thread);
+  EXPECT_EQ(cut.n, 0);
+}
+
+}  // namespace vessel_contact_test
+}  // namespace filum
