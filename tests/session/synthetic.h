@@ -119,6 +119,7 @@ inline void write_recording(const std::string& file, std::uint64_t n, bool score
   RecorderOptions some = options(file);
   some.step_capacity = some.event_capacity = some.array_hash_capacity = n + 8;
   some.sample_capacity = 2 * n + 8;
+  some.interval = std::chrono::hours(1);  // all of it at the end, so that blocks are full however slow the machine is
   Recorder recorder(some);
   for (std::uint64_t i = 1; i <= n; ++i) {
     recorder.record_step(step(i));
