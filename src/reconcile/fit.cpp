@@ -229,7 +229,7 @@ struct Fitter::Solver {
     S = A;
     s = b;
     for (std::size_t i = 0; i < trials.size(); ++i) {
-      if (D[i].rows() == 0) continue;
+      if (C[i].size() == 0) continue;  // nothing of its own, or no globals
       const Eigen::MatrixXd X = D[i].ldlt().solve(C[i].transpose());
       S.noalias() -= C[i] * X;
       s.noalias() -= X.transpose() * d[i];
@@ -262,7 +262,7 @@ struct Fitter::Solver {
       fitter.put(next, p, fitter.get(f, p) + move);
     }
     for (std::size_t i = 0; i < trials.size(); ++i) {
-      if (D[i].rows() == 0) continue;
+      if (C[i].size() == 0) continue;  // nothing of its own, or no globals
       const Eigen::VectorXd dn = D[i].ldlt().solve(d[i] - C[i].transpose() * dx);
       const auto t = static_cast<std::size_t>(trials[i]);
       int k = 0;
