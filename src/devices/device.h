@@ -28,7 +28,7 @@ struct DeviceSample {
   double grip_force = 0.0;          // [N], measured at the pads, >= 0
   std::int32_t raw_angle = 0;       // [count], as sent; 0 where there is no converter
   std::int32_t raw_force = 0;       // [count]
-  std::uint32_t buttons = 0;        // bit set: 1 clutch, 2 cut, 4 next
+  std::uint32_t buttons = 0;        // bit set: 1 clutch, 2 cut, 4 next, 8 and 16 clamps off, 32 fresh suture
 };
 
 enum class DeviceState { waiting, live, stale, lost, finished };

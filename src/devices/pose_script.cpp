@@ -38,14 +38,14 @@ constexpr double kReach = 0.2;            // [m], as far from the origin as any 
 constexpr double kTurnsTolerance = 0.02;  // arc.turns and p must agree to this; then p decides
 
 std::uint32_t read_buttons(const YamlNode& node) {
-  static const std::pair<const char*, std::uint32_t> kNames[] = {{"clutch", 1}, {"cut", 2}, {"next", 4}};
+  static const std::pair<const char*, std::uint32_t> kNames[] = {{"clutch", 1}, {"cut", 2}, {"next", 4}, {"fresh", 32}};
   std::uint32_t buttons = 0;
   if (!node.has("buttons")) return buttons;
   for (const std::string& text : node.texts("buttons")) {
     const auto* name =
         std::find_if(std::begin(kNames), std::end(kNames), [&](const auto& n) { return text == n.first; });
     if (name == std::end(kNames))
-      node.refuse("buttons", "a list of clutch, cut, next (\"" + text + "\" is none)");
+      node.refuse("buttons", "a list of clutch, cut, next, fresh (\"" + text + "\" is none)");
     buttons |= name->second;
   }
   return buttons;

@@ -6,7 +6,7 @@
 
 namespace filum {
 
-inline constexpr std::uint32_t kButtonBits = 0xFF;      // clutch, cut, next
+inline constexpr std::uint32_t kButtonBits = 0xFF;      // clutch, cut, next, clamps off, fresh suture
 inline constexpr std::uint32_t kAngleSaturated = 0x100;
 inline constexpr std::uint32_t kForceSaturated = 0x200;
 inline constexpr std::uint32_t kAngleBroken = 0x400;    // wire broken or shorted

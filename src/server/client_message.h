@@ -26,7 +26,7 @@ struct PointerMessage {
   double time = 0.0;           // [s], the browser's monotonic clock
   Pose X_WD;                   // commanded pose, quaternion normalised
   double grip = 0.0;           // 0 open ... 1 closed tight
-  std::uint32_t buttons = 0;   // bits: 1 clutch, 2 cut, 4 next
+  std::uint32_t buttons = 0;   // bits: 1 clutch, 2 cut, 4 next, 8 and 16 clamps off, 32 fresh suture
 };
 struct AckMessage {
   std::uint64_t frame = 0;

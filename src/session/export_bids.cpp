@@ -249,7 +249,7 @@ void write_dataset(const Names& names, const RecordingMeta& meta, std::vector<st
          "hand's space, times in their LATENCY channel, nothing filled in; scene0, scene1, ... are the poses commanded in the\n"
          "simulated scene after clutch and motion scaling. The origin of both is the middle of the field, x to the right, y\n"
          "away from the trainee, z up; rotations are right-handed quaternions. grip_force is in newton, raw_angle and raw_force are the converter's counts;\n"
-         "flags is a bit set: 1 clutch, 2 cut, 4 next, 256 angle saturated, 512 force saturated, 1024 and 2048 their wires broken, 4096 calibration of another handle.\n";
+         "flags is a bit set: 1 clutch, 2 cut, 4 next, 8 and 16 clamps off, 32 fresh suture, 256 angle saturated, 512 force saturated, 1024 and 2048 their wires broken, 4096 calibration of another handle.\n";
   add_row(names.root / "participants.tsv", "participant_id\tcode", names.subject + "\t" + (meta.participant.empty() ? "n/a" : meta.participant), written);
   TextOut(names.root / "participants.json", written)
       << Json({{"code", {{"Description", "Code of the participant in the trainer; never a name"}}}}).dump(2) + "\n";

@@ -39,7 +39,7 @@ Table inputs_table(const RecordingReader& recording) {
       table.add(prefix + "grip_angle", "rad", "commanded opening of the jaws", tool.grip_angle);
       table.add(prefix + "grip_force", "N", "measured squeeze; empty where not measured",
                 tool.has_grip_force ? tool.grip_force : kNaN);
-      table.add_integer(prefix + "buttons", "-", "bit set: 1 clutch, 2 cut, 4 next", tool.buttons);
+      table.add_integer(prefix + "buttons", "-", "bit set: 1 clutch, 2 cut, 4 next, 8 and 16 clamps off, 32 fresh suture", tool.buttons);
     }
     table.add_text("state_hash", "-", "XXH3-64 of the whole state after the step, hexadecimal",
                    hex(record.state_hash));
@@ -103,7 +103,7 @@ Table samples_table(const RecordingReader& recording) {
     table.add("rate", "Hz", "mean rate of this tool's readings over the whole recording, by the host's clock", rates.of(record.tool));
     table.add_integer("raw_angle", "count", "converter's reading of the grip angle", record.raw_angle);
     table.add_integer("raw_force", "count", "converter's reading of the grip force", record.raw_force);
-    table.add_integer("buttons", "-", "bit set: 1 clutch, 2 cut, 4 next; 256 angle saturated, 512 force saturated, 1024 angle wire broken, 2048 force wire broken, 4096 calibration of another handle", record.buttons);
+    table.add_integer("buttons", "-", "bit set: 1 clutch, 2 cut, 4 next, 8 and 16 clamps off, 32 fresh suture; 256 angle saturated, 512 force saturated, 1024 angle wire broken, 2048 force wire broken, 4096 calibration of another handle", record.buttons);
   }
   return table.take();
 }

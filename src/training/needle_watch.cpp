@@ -26,7 +26,7 @@ bool cut_off(const Observation& o, int passes) {
   for (int i = 0; i < passes; ++i) {
     const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
     const ThreadPart piece = piece_at(o, arc);
-    if (arc < 0.0 || piece.first == 0 || piece.last == o.n_nodes - 1) return false;
+    if (arc < 0.0 || !cut_in_front(o, piece) || piece.last == o.n_nodes - 1) return false;
   }
   return true;
 }

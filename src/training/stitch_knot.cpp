@@ -9,7 +9,7 @@ double cut_tail(const Observation& o, const ThreadPart& piece, const KnotReport&
   const double low = length_between(o, piece.first, piece.first + knot.core_begin);
   const double high = length_between(o, piece.first + knot.core_end, piece.last);
   if (piece.last == o.n_nodes - 1) return low;
-  return piece.first == 0 ? high : std::max(low, high);
+  return !cut_in_front(o, piece) ? high : std::max(low, high);
 }
 
 }  // namespace

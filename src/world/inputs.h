@@ -15,7 +15,7 @@ struct ToolInput {
   double grip_force = 0.0;       // [N], measured squeeze; used only if has_grip_force
   bool has_grip_force = false;
   bool valid = false;            // false: no live device; the tool keeps its last pose and scoring pauses
-  std::uint32_t buttons = 0;     // 1 clutch, 2 cut, 4 next, 8 upstream clamp off, 16 downstream clamp off
+  std::uint32_t buttons = 0;     // 1 clutch, 2 cut, 4 next, 8 upstream clamp off, 16 downstream clamp off, 32 fresh suture
 };
 
 struct Inputs {

@@ -32,6 +32,7 @@ struct Model {
   std::vector<Pose> instrument_start;
   std::vector<PelletParameters> pellets;  // small objects to be picked up; most scenes have none
   std::shared_ptr<const BrainModel> brain;  // instead of the thread, in scenes of brain retraction
+  int sutures = 1;                 // with a needle: so many may be used, one after the other (world/fresh_suture.h)
   std::shared_ptr<const NeedleModel> needle;  // swaged to the long end of the thread; most scenes have none
   std::shared_ptr<const VesselModel> vessel;  // tissue to be stitched
   std::vector<std::string> sources;  // files it was read from, relative to the root

@@ -19,6 +19,7 @@ struct NeedleObservation {
   std::array<bool, 3> held{};             // by each tool
   std::array<double, 3> grip_share{};     // where: 0 at the swage, 1 at the point
   std::array<double, 3> grip_angle{};     // [rad], between the wire there and the handle of the tool
+  int sutures_left = 0;                   // that may still be asked for
   double thread_pull = 0.0;               // [N], of the thread on the swage
 };
 

@@ -18,7 +18,7 @@ void say(Observation& o, const char* name, int tool, double value, const char* u
 
 }  // namespace
 
-NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle->shape, static_cast<int>(model.instruments.size())) {
+NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle->shape, static_cast<int>(model.instruments.size())), fresh_(model) {
   options_.dt = model.step.dt;
   options_.gravity = model.step.gravity;
   options_.sheet = model.description.floor_height;
@@ -41,6 +41,7 @@ void NeedleScene::match(const State& s) noexcept {
 }
 
 void NeedleScene::handle_buttons(State& s, std::uint32_t buttons, Observation& o) const noexcept {
+  fresh_.hear(s, buttons, o);
   if (tissue_) tissue_->handle_clamp(s.tissue, buttons, o);
 }
 
@@ -136,6 +137,7 @@ void NeedleScene::observe(const State& s, Observation& o) const noexcept {
   n.point_W = s.needle.X_WN * shape.point(shape.length());
   n.point_direction_W = s.needle.X_WN.q * shape.tangent(shape.length());
   n.swage_W = s.needle.X_WN * shape.point(0.0);
+  n.sutures_left = model_.sutures - s.sutures.taken;
   n.thread_pull = thread_pull_;
   if (tissue_) tissue_->observe(s.tissue, s.thread, o);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {

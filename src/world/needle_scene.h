@@ -8,6 +8,7 @@
 
 #include "physics/implicit_rod.h"
 #include "physics/needle.h"
+#include "world/fresh_suture.h"
 #include "world/model.h"
 #include "world/observation.h"
 #include "world/state.h"
@@ -24,7 +25,7 @@ class NeedleScene {
   /// After a state was restored.
   void match(const State& s) noexcept;
 
-  /// Buttons of all tools together; the clamp of a vessel hears them.
+  /// Buttons of all tools together; the clamp of a vessel hears them, and who hands fresh sutures.
   void handle_buttons(State& s, std::uint32_t buttons, Observation& o) const noexcept;
   /// Jaws that close on the wire, or on the vessel, stop at it and squeeze it. Call before the instruments move.
   void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
@@ -43,6 +44,7 @@ class NeedleScene {
   const Model& model_;
   NeedleBody body_;
   NeedleOptions options_;
+  FreshSuture fresh_;
   std::unique_ptr<VesselScene> tissue_;  // in scenes with some
   double thread_pull_ = 0.0;
 };

@@ -29,7 +29,7 @@ struct ToolObservation {
 
 /// Something that happened in a step. `name` is one of the constants in kEventNames (static storage).
 struct WorldEvent {
-  const char* name = "";          // "grasp", "release", "drop", "cut", "thread-break", "thread-overload", "overrun", "solver-trouble", "input-lost", "input-back", "object-taken" (value: least squeeze that holds), "object-released", "object-slipped", "object-broken" (value: squeeze), "needle-taken" (value: share of its length from the swage), "needle-released", "needle-dropped", "puncture", "tear", "clamp-off" (value: 0 upstream, 1 downstream), "clamps-wrong-order", "milking-let-go" (value: ul emptied), "milking-refilled" (value: s), "milking-stayed-empty" (value: s), "milking-spoiled"
+  const char* name = "";          // "grasp", "release", "drop", "cut", "thread-break", "thread-overload", "overrun", "solver-trouble", "input-lost", "input-back", "object-taken" (value: least squeeze that holds), "object-released", "object-slipped", "object-broken" (value: squeeze), "needle-taken" (value: share of its length from the swage), "needle-released", "needle-dropped", "puncture", "tear", "clamp-off" (value: 0 upstream, 1 downstream), "clamps-wrong-order", "milking-let-go" (value: ul emptied), "milking-refilled" (value: s), "milking-stayed-empty" (value: s), "milking-spoiled", "suture-fresh" (value: how many are left); asked for in vain: "suture-none-left", "suture-held", "suture-in-tissue", "suture-no-room", "suture-in-the-way"
   int tool = -1;                  // tool index or -1
   double value = 0.0;             // what the event measured, unit below
   const char* unit = "-";

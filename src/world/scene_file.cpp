@@ -178,6 +178,8 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   const YamlNode thread = scene.map("thread");
   m->thread_path = read_thread_path(thread, m->resolution.longest, d.capacity);
   if (scene.has("needle")) read_needle(root, scene.map("needle"), *m);
+  m->sutures = scene.integer_or("sutures", 1, 1, 50);
+  if (m->sutures > 1 && !m->needle) scene.refuse("sutures", "one, of a thread without a needle");
   d.has_post = scene.has("post") || !m->needle;
   if (d.has_post) {
     d.post = read_bar(scene.map("post"));

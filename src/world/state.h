@@ -14,6 +14,12 @@
 
 namespace filum {
 
+/// Fresh sutures (world/fresh_suture.h).
+struct SutureState {
+  std::int32_t taken = 1;                   // so far, the first one among them
+  std::int32_t down = 0;                    // their button is pressed
+};
+
 struct State {
   std::uint64_t step = 0;
   RodState thread;
@@ -25,6 +31,7 @@ struct State {
   std::vector<PelletState> pellets;
   NeedleState needle;                       // of scenes with one
   std::int32_t has_needle = 0;
+  SutureState sutures;
   VesselState tissue;                       // of scenes with some
   double overloaded = 0.0;                  // [N], highest tension since the last overload event, 0 when below
   double cut_low = -1.0, cut_high = -1.0;   // [m], arc of the cuts below and above the post, -1 none

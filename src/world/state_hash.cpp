@@ -124,6 +124,7 @@ std::uint64_t hash_state(const State& s) noexcept {
     const std::uint64_t tissue = hash_vessel(s.tissue);
     h = hash_bytes(&tissue, sizeof tissue, h);
   }
+  if (s.sutures.taken != 1 || s.sutures.down != 0) h = hash_bytes(&s.sutures, sizeof s.sutures, h);  // else as it was before there were any
   if (s.brain.blades.empty()) return h;
   for (const auto& [name, hash] : brain_hashes(s.brain)) h = hash_bytes(&hash, sizeof hash, h);
   return h;
@@ -137,6 +138,7 @@ std::vector<std::pair<std::string, std::uint64_t>> array_hashes(const State& s) 
     named.emplace_back("needle", hash_needle(s.needle));
     named.emplace_back("tissue", hash_vessel(s.tissue));
   }
+  if (s.sutures.taken != 1 || s.sutures.down != 0) named.emplace_back("sutures", hash_bytes(&s.sutures, sizeof s.sutures));
   if (!s.brain.blades.empty())
     for (const auto& [name, hash] : brain_hashes(s.brain)) named.emplace_back(name, hash);
   return named;

@@ -15,6 +15,7 @@ namespace {
 constexpr Range kLayerThickness{1e-6, 5e-3};   // [m]
 constexpr Range kYoung{10.0, 1e10};            // [Pa], jelly to hard plastics
 constexpr Range kTissueLength{1e-5, 0.1};      // [m]
+constexpr std::size_t kMostTurns = 16;
 constexpr double kMostGap = 0.05;              // [m]
 constexpr double kMostDamping = 1e5;           // [1/s]
 constexpr Range kBloodPressure{100.0, 1e5};    // [Pa], 750 mmHg
@@ -78,6 +79,13 @@ void read_blood(const YamlNode& node, VesselModel& v) {
   v.slack = node.quantity_or("slack", "mmHg", 0.0, {-1e4, 0.0});
 }
 
+/// `turns:` of a double clamp: from how the mesh is made, one after the other.
+std::vector<double> read_turns(const YamlNode& node) {
+  const std::vector<double> turns = node.quantities("turns", "deg", Range::between(-2.0 * std::numbers::pi, 2.0 * std::numbers::pi));
+  if (turns.size() < 2 || turns.size() > kMostTurns || turns[0] != 0.0) node.refuse("turns", "two to sixteen angles, the first zero: as the clamp is at the start");
+  return turns;
+}
+
 double outer_radius(const TubeShape& s) { return make_tube(s).nodes.topRows<2>().colwise().norm().maxCoeff(); }  // [m], as first made
 
 /// `side:` of a vessel: the second stump leans over an opening in the side of a whole vessel of the same preset. Angles count from the heel.
@@ -94,7 +102,7 @@ void read_side(const YamlNode& node, const TubeShape& stump, VesselModel& v) {
   opening.across = 2 * node.integer("half_across", 1, (stump.around - 4) / 2);
   opening.along = node.integer("opening_along", 2, vessel.along - 4);
   if (2 * (opening.across + opening.along) > kMostEdgeNodes) node.refuse("opening_along", "at most 32 elements across and along the opening together");
-  v.over = node.quantity("over", "deg", Range::between(-std::numbers::pi, std::numbers::pi));
+  v.turns = {0.0, node.quantity("over", "deg", Range::between(-std::numbers::pi, std::numbers::pi))};
   v.clamp.side = hold;
   v.cut_along = v.clamp.X_WB.q * Vec3::UnitZ();
   v.mesh = make_end_to_side(vessel, opening, stump, v.clamp);
@@ -127,6 +135,7 @@ void read_stumps(const std::string& root, const YamlNode& node, Model& m, Vessel
   v.lumen = true;
   v.shape = s;
   if (node.has("side")) return read_side(node.map("side"), s, v);
+  if (node.has("turns")) v.turns = read_turns(node);
   v.cut_along = -Vec3::UnitX();
   v.mesh = make_stumps(s, v.clamp);
   for (Eigen::Index i = 0; i < v.mesh.nodes.cols(); ++i) {

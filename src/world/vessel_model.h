@@ -23,7 +23,7 @@ struct VesselModel {
   bool lumen = false;                 // two vessels in a double clamp
   DoubleClamp clamp;                  // of these, as first made
   double closed_gap = 0.0;            // [m], where it can be slid to
-  double over = std::numbers::pi;     // [rad], by which it is turned over
+  std::vector<double> turns = {0.0, std::numbers::pi};  // [rad], from there, to which it is turned one after the other and round again: over and back
   TubeShape shape;                    // of each stump
   double radius = 0.0;                // [m], outer, as first made
   Circulation circulation;            // that the clamps keep out

@@ -96,8 +96,8 @@ void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observatio
     if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, -1, value, unit};
   };
   if ((pressed & kNext) != 0) {
-    c.over = c.over != 0 ? 0 : 1;
-    say("clamp-turned", c.over != 0 ? model_.over : 0.0, "rad");
+    c.over = (c.over + 1) % static_cast<std::int32_t>(model_.turns.size());
+    say("clamp-turned", model_.turns[static_cast<std::size_t>(c.over)], "rad");
   }
   if ((pressed & kCut) != 0) c.closing = c.closing != 0 ? 0 : 1;
   if ((let_go & kCut) != 0) say("clamp-slid", c.gap, "m");
@@ -106,7 +106,7 @@ void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observatio
   now.gap = c.gap;
   now.turn = c.turn;
   const double gap = (buttons & kCut) == 0 ? c.gap : c.closing != 0 ? model_.closed_gap : model_.clamp.gap;
-  now = approach(now, gap, model_.clamp.turn + (c.over != 0 ? model_.over : 0.0), model_.wall.dt, kSlideSpeed, kTurnSpeed);
+  now = approach(now, gap, model_.clamp.turn + model_.turns[static_cast<std::size_t>(c.over)], model_.wall.dt, kSlideSpeed, kTurnSpeed);
   c.gap = now.gap;
   c.turn = now.turn;
 }

@@ -21,7 +21,7 @@ class VesselScene {
   void size_observation(Observation& o) const;
 
   void hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
-  /// The clamp's buttons: `next` (4) turns it over and back, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
+  /// The clamp's buttons: `next` (4) turns it over and back, or to the next of the scene's turns, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
   /// step then carries the stumps along. 8 and 16 take the upstream and the downstream clamp off; then it moves no more.
   void handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept;
   /// The tips of this tool have just closed: true if they have opened a clamp.

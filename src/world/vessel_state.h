@@ -27,7 +27,7 @@ struct TouchState {
 struct ClampState {
   double gap = 0.0;            // [m], between the cut edges as long as they are free
   double turn = 0.0;           // [rad], about the bar
-  std::int32_t over = 0;       // turned over, or on the way there
+  std::int32_t over = 0;       // which of its turns it is at, or on the way to: 0 as first made
   std::int32_t closing = 0;    // which way it slid last
   std::uint32_t down = 0;      // buttons that are pressed
 };

@@ -7,7 +7,7 @@
 #include "base/stage_clock.h"
 #include "world/brain_scene.h"
 #include "world/fixtures.h"
-#include "world/measured_model.h"
+#include "world/fresh_suture.h"
 #include "world/model.h"
 #include "world/needle_scene.h"
 #include "world/observe.h"
@@ -83,8 +83,7 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
     return;
   }
   const auto n_tools = model->instruments.size();
-  state.thread = RodState::from_nodes(model->thread_path, model->description.capacity);
-  if (model->rest_curvature != 0.0) curl(state.thread, model->rest_curvature);
+  state.thread = first_thread(*model);
   state.memory = rod.make_memory();
   commands.resize(n_tools);
   for (std::size_t i = 0; i < n_tools; ++i) {

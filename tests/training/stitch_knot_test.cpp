@@ -207,5 +207,17 @@ TEST(StitchKnot, EveryPieceOfTheThreadHasItsOwnKnot) {
   EXPECT_EQ(knots_in_tissue(o).size(), 1u) << "one thread, one look";
 }
 
+/// A fresh suture has taken away what was cut off before the first piece: its arcs tell.
+TEST(StitchKnot, AnEndWhoseRestIsGoneIsACutEnd) {
+  Observation o = cut_at(trefoil(1e-3, 5e-3, 8e-3), {150});
+  const StitchKnot whole = knot_in_piece(o, {0, 150});
+  EXPECT_FALSE(cut_in_front(o, {0, 150}));
+  EXPECT_TRUE(cut_in_front(o, {151, o.n_nodes - 1}));
+  for (double& arc : o.arc) arc += 4e-3;
+  EXPECT_TRUE(cut_in_front(o, {0, 150}));
+  const StitchKnot k = knot_in_piece(o, {0, 150});
+  EXPECT_NEAR(k.tail, std::max(whole.begin, whole.tail), 1e-9) << "the longer of two cut ends, not the one behind";
+}
+
 }  // namespace stitch_knot_test
 }  // namespace filum

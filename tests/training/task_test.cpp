@@ -71,7 +71,8 @@ TEST(Task, TheAnastomosisAsksForEachOfEightStitchesTiedAndCut) {
     EXPECT_EQ(at(1).kind, NeedleGoal::Kind::tie);
     EXPECT_EQ(at(2).kind, NeedleGoal::Kind::cut);
     for (int i = 1; i < 3; ++i) EXPECT_EQ(at(i).passes, 2 * k);
-    EXPECT_EQ(at(1).throws, 3);
+    EXPECT_EQ(at(1).throws, 2);
+    EXPECT_EQ(at(1).knot, "square");
   }
   EXPECT_NEAR(task.max_total(), 100.0, 1e-12);
   EXPECT_GT(task.needle->lapses.loose_gap, 0.0);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "world/vessel_model.h"
 
 namespace filum {
 namespace scene_file_test {
@@ -71,6 +72,28 @@ TEST_F(SceneFile, EveryShippedSceneAndSutureLoads) {
   }
   EXPECT_GE(scenes, 3);
   EXPECT_GE(sutures, 6);
+}
+
+TEST_F(SceneFile, SuturesAndTurnsOfTheClamp) {
+  const std::string file = "curricula/artery-knot/scene.yaml", good = read(root_ / file), turn = "  turn: \"0 deg\"\n";
+  EXPECT_EQ(load_model(root_.string(), "artery-knot", "")->sutures, 1);
+  const auto with = [&](const std::string& sutures, const std::string& turns) {
+    std::string text = good;
+    text.replace(text.find(turn), turn.size(), turn + turns);
+    write(root_ / file, text + sutures);
+    return load_model(root_.string(), "artery-knot", "");
+  };
+  const auto m = with("sutures: \"8\"\n", "  turns: [\"0 deg\", \"-180 deg\", \"90 deg\"]\n");
+  EXPECT_EQ(m->sutures, 8);
+  ASSERT_EQ(m->vessel->turns.size(), 3u);
+  EXPECT_NEAR(m->vessel->turns[1], -3.14159265, 1e-8);
+  for (const char* bad : {"  turns: [\"90 deg\", \"0 deg\"]\n", "  turns: [\"0 deg\"]\n", "  turns: [\"0 deg\", \"400 deg\"]\n"}) EXPECT_THROW(with("", bad), InputError) << bad;
+  for (const char* bad : {"sutures: \"0\"\n", "sutures: \"51\"\n"}) EXPECT_THROW(with(bad, ""), InputError) << bad;
+  write(root_ / file, good);
+  const std::string post = read(root_ / scene_);
+  write(root_ / scene_, post + "sutures: \"2\"\n");
+  EXPECT_THROW(load_model(root_.string(), "knot-square", ""), InputError) << "no needle";
+  write(root_ / scene_, post);
 }
 
 TEST_F(SceneFile, ReadsWhatIsWritten) {

@@ -8,6 +8,7 @@
 #include "world/model.h"
 #include "world/needle_model.h"
 #include "world/state.h"
+#include "world/vessel_model.h"
 #include "world/world.h"
 
 namespace filum {
@@ -179,6 +180,33 @@ TEST(VesselScene, ClampSlidesAndTurnsOver) {
   EXPECT_NEAR(r.z(), -before.z(), 20e-6);
   run(other, 1200, 4);
   EXPECT_EQ(w.state_hash(), other.state_hash());
+}
+
+/// A scene's own turns, one after the other and round again; what is asked for on the way counts at once.
+TEST(VesselScene, ClampGoesThroughItsTurns) {
+  auto model = std::make_shared<Model>(*stumps());
+  auto vessel = std::make_shared<VesselModel>(*model->vessel);
+  vessel->turns = {0.0, -0.3, 0.2};
+  model->vessel = vessel;
+  World w(model);
+  Inputs in;
+  in.tools[0].valid = true;
+  in.tools[0].X_WD.p = Vec3(-6e-3, 4e-3, 8e-3);
+  const auto press = [&](int steps) {
+    in.tools[0].buttons = 4;
+    w.step(in);
+    const double said = w.observation().n_events > 0 ? w.observation().events[0].value : -9.0;
+    in.tools[0].buttons = 0;
+    for (int k = 0; k < steps; ++k) w.step(in);
+    return said;
+  };
+  EXPECT_EQ(press(150), -0.3);
+  EXPECT_NEAR(w.state().tissue.clamp.turn, -0.3, 1e-12);
+  const Vec3 r = w.observation().tissue.positions.col(0), before = vessel->mesh.nodes.col(0), turned = Eigen::AngleAxisd(-0.3, Vec3::UnitY()) * before;
+  EXPECT_LT((r - turned).norm(), 20e-6) << "the held end is where the bar has turned it";
+  EXPECT_EQ(press(10), 0.2);
+  EXPECT_EQ(press(150), 0.0);
+  EXPECT_NEAR(w.state().tissue.clamp.turn, 0.0, 1e-12);
 }
 
 TEST(VesselScene, StumpsSurviveWildHands) {

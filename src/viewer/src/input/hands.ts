@@ -10,12 +10,12 @@ export interface Hand {
   grip: number; // 0 open ... 1 closed tight
   closing: boolean; // a key or button holds the grip closing
   latched: boolean; // the grip stays when nothing holds it
-  buttons: number; // 1 clutch, 2 cut, 4 next, 8 and 16 clamps off
+  buttons: number; // 1 clutch, 2 cut, 4 next, 8 and 16 clamps off, 32 fresh suture
   tapped: number; // those pressed a moment ago: a tap between two messages counts, also with a trainer that is late
   since: number; // [s], when a message first told of them
 }
 
-export const kClutch = 1, kCut = 2, kNext = 4, kUpstreamOff = 8, kDownstreamOff = 16;
+export const kClutch = 1, kCut = 2, kNext = 4, kUpstreamOff = 8, kDownstreamOff = 16, kFresh = 32;
 const kTap = 0.06; // [s], for which a tap is told
 const kCloseRate = 2.2, kOpenRate = 4.5; // [1/s]
 const kReach = 0.06; // [m], hands stay within this distance of the middle of the scene

@@ -1,6 +1,6 @@
 // Turns mouse, keyboard and gamepad on the field into movements of the hands and sends their poses to the trainer.
 import type { Pointer } from "../messages";
-import { Hands, kClutch, kCut, kDownstreamOff, kNext, kUpstreamOff } from "./hands";
+import { Hands, kClutch, kCut, kDownstreamOff, kFresh, kNext, kUpstreamOff } from "./hands";
 
 const kSendEvery = 1000 / 120; // [ms]
 const kKeepAlive = 40; // [ms], also an unmoved hand is reported: silence would count as a lost device
@@ -127,6 +127,7 @@ export class PointerInput {
       case "KeyC": hands.press(hands.active, kCut, down); break;
       case "KeyU": hands.press(hands.active, kUpstreamOff, down); break;
       case "KeyZ": hands.press(hands.active, kDownstreamOff, down); break;
+      case "KeyT": hands.press(hands.active, kFresh, down); break;
       case "KeyN": hands.press(hands.active, kNext, down); break;
       case "ControlLeft": case "ControlRight": hands.press(hands.active, kClutch, down); break;
       case "KeyP": if (first) void this.surface.requestPointerLock(); break;

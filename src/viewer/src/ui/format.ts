@@ -46,6 +46,12 @@ export function day(iso: string): string {
 const kEventTexts: Record<string, string> = {
   "blade-changed": "Blade changed",
   "blade-change-refused": "Blade not changed: lift it clear of the tissue and free it from its arm first",
+  "suture-fresh": "A fresh suture lies ready",
+  "suture-none-left": "No fresh suture is left",
+  "suture-held": "No fresh suture: let go of needle and thread first",
+  "suture-in-tissue": "No fresh suture: the needle's thread still runs through the tissue; cut both ends first",
+  "suture-no-room": "No fresh suture: there is too much thread in the field",
+  "suture-in-the-way": "No fresh suture: clear the place where the first one lay",
 };
 
 /// "thread-overload" -> "Thread overload"

@@ -208,6 +208,7 @@ const kScenes: Record<string, (title: string) => SVGElement> = {
   "stitch-knot": (title) => vesselPicture(title, "#dcc8b6", 3),
   "artery-knot": (title) => vesselPicture(title, "#cf8378", 3),
   "artery-two-stitches": (title) => joinPicture(title, [90, 270], []),
+  "artery-four-stitches": (title) => joinPicture(title, [0, 180], [90, 270]),
   "anastomosis-vein": veinPicture,
   "triangulation-120": (title) => joinPicture(title, [90, 210, 330], [30, 150, 270]),
   "posterior-wall-first": (title) => joinPicture(title, [225, 270, 315], [0, 45, 90, 135, 180]),
