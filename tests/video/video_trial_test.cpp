@@ -103,10 +103,10 @@ TEST(VideoTrial, CreepIsNamedFromFilmsAlone) {
   }
   f.write("experiment.yaml", kThread + trials);
   const Result r = reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  EXPECT_EQ(r.effects[0].effect, Effect::bending_creep);
-  ASSERT_TRUE(r.confirmation.has_value());
-  EXPECT_TRUE(r.confirmation->holds);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::bending_creep);
+  ASSERT_TRUE(r.confirm.has_value());
+  EXPECT_TRUE(r.confirm->holds);
 }
 
 /// Films of a block pressed by 0.6 mm at two speeds, with the force of relaxation g1 = 0.4, tau = 2 s, beside them. The platen's point comes to the edge behind
@@ -139,10 +139,10 @@ TEST(VideoTrial, RelaxationOfABlockIsNamedFromFilms) {
   Folder f;
   film_a_block(f, 1.0, 8.0);
   const Result r = reconcile(load_dataset(f.path(), FILUM_SOURCE_DIR));
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  EXPECT_EQ(r.effects[0].effect, Effect::viscoelastic_relaxation);
-  EXPECT_NEAR(r.effects[0].parameters[0].value, 0.4, 0.04);
-  EXPECT_NEAR(r.effects[0].parameters[1].value, 2.0, 0.2);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::viscoelastic_relaxation);
+  EXPECT_NEAR(r.decide.effects[0].parameters[0].value, 0.4, 0.04);
+  EXPECT_NEAR(r.decide.effects[0].parameters[1].value, 2.0, 0.2);
 }
 
 /// A blade filmed from the side on its way into tissue, of two sizes; the force beside it relaxes by g1 = 0.4 with tau = 2 s whatever the size.
@@ -173,10 +173,10 @@ TEST(VideoTrial, RelaxationUnderABladeIsNamedFromFilms) {
   const Dataset d = load_dataset(f.path(), FILUM_SOURCE_DIR);
   for (const Trial& t : d.trials) EXPECT_NEAR(t.at("depth")[199], 0.6e-3, 2e-6);
   const Result r = reconcile(d);
-  ASSERT_EQ(r.verdict, "effect") << r.sentence;
-  EXPECT_EQ(r.effects[0].effect, Effect::viscoelastic_relaxation);
-  EXPECT_NEAR(r.effects[0].parameters[0].value, 0.4, 0.04);
-  EXPECT_NEAR(r.effects[0].parameters[1].value, 2.0, 0.2);
+  ASSERT_EQ(r.decide.verdict, "effect") << r.decide.sentence;
+  EXPECT_EQ(r.decide.effects[0].effect, Effect::viscoelastic_relaxation);
+  EXPECT_NEAR(r.decide.effects[0].parameters[0].value, 0.4, 0.04);
+  EXPECT_NEAR(r.decide.effects[0].parameters[1].value, 2.0, 0.2);
 }
 
 TEST(VideoTrial, SaysWhatWasLostWhereAndWhy) {
