@@ -262,7 +262,7 @@ struct Fitter::Solver {
       fitter.put(next, p, fitter.get(f, p) + move);
     }
     for (std::size_t i = 0; i < trials.size(); ++i) {
-      if (C[i].size() == 0) continue;  // nothing of its own, or no globals
+      if (D[i].rows() == 0) continue;
       const Eigen::VectorXd dn = D[i].ldlt().solve(d[i] - C[i].transpose() * dx);
       const auto t = static_cast<std::size_t>(trials[i]);
       int k = 0;

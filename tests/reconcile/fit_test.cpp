@@ -63,6 +63,18 @@ TEST(Fit, TheGainOfASecondInstrumentIsFoundAsOneNumber) {
 }
 
 /// The reach of a thread that is let out grows with time: an error of its gain is no drift.
+/// As of held-out records: where nothing else is free, a record's own gain is still fitted.
+TEST(Fit, AGainIsFoundWhereNothingElseIsFree) {
+  const double sigma = 1e-6;
+  Dataset d = thread_with_gains(1.01, 1.0, sigma);
+  d.outputs = {"tip_drop"};
+  d.free.clear();
+  const auto model = make_model(d);
+  const Fitter fitter(*model, noise_of(*model, sigma));
+  const Fit f = fitter.fit({}, model->guess(), {});
+  for (const double gain : f.log_gain) EXPECT_NEAR(gain, std::log(1.01), 2e-4);
+}
+
 TEST(Fit, TheGainOfASecondInstrumentPromisesNoDrift) {
   const double sigma = 3e-5;
   const Dataset d = thread_with_gains(0.992, 1.005, sigma), drifting = [&] {
