@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -62,8 +63,10 @@ int run_one(const ReconcileOptions& o, const Streams& io) {
   std::fprintf(io.out, "%s: %s%s", name.c_str(), r.decide.verdict.c_str(), r.decide.partial ? " (partial)" : "");
   if (r.decide.verdict == "effect")
     for (const auto& e : r.decide.effects) std::fprintf(io.out, " %s", reconcile::info(e.effect).name.c_str());
-  std::fprintf(io.out, "\n%s\ngap: fit %.3g -> %.3g, held out %.3g -> %.3g (noise = 1)\n%s/report.html, %.1f s\n", r.decide.sentence.c_str(), r.decide.gap.before, r.decide.gap.after, r.challenge.gap.before, r.challenge.gap.after,
-              o.out.c_str(), r.seconds);
+  std::fprintf(io.out, "\n%s\ngap: fit %.3g -> %.3g, ", r.decide.sentence.c_str(), r.decide.gap.before, r.decide.gap.after);
+  if (std::isfinite(r.challenge.gap.before)) std::fprintf(io.out, "held out %.3g -> %.3g (noise = 1)\n", r.challenge.gap.before, r.challenge.gap.after);
+  else std::fprintf(io.out, "none held out: %s (noise = 1)\n", r.challenge.how.c_str());
+  std::fprintf(io.out, "%s/report.html, %.1f s\n", o.out.c_str(), r.seconds);
   return kDone;
 }
 

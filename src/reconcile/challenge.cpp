@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace filum::reconcile {
@@ -175,7 +176,10 @@ ChallengeSummary challenge(const Candidates& sets, const Fit* winner, const Chal
     add_squares(all.noise(), a[i], sa, m);
   }
   if (marked) out.before = b[0], out.after = a[0];
-  if (n == 0) return out;
+  if (n == 0) {
+    out.gap.before = out.gap.after = std::numeric_limits<double>::quiet_NaN();  // no number: 0 would be better than noise
+    return out;
+  }
   out.gap = {std::sqrt(sb / n), std::sqrt(sa / m)};
   out.done = before > options.judged * std::sqrt(2.0 * n);
   if (out.done) out.explained = 1.0 - std::max(0.0, after) / before;

@@ -37,7 +37,7 @@ struct Fold {
 struct ChallengeSummary {
   bool done = false;
   double explained = 1.0;  // share of the held-out misfit that goes
-  Gap gap;
+  Gap gap;                 // NaN where nothing is held out
   std::string how;
   std::vector<Fold> folds;
   Fit before, after;       // predictions of the trials marked hold_out; empty without them

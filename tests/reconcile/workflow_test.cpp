@@ -102,6 +102,7 @@ TEST(Workflow, OneTrialWithoutReplicatesIsSolvedAndSaidSo) {
   EXPECT_NE(notices.find("no replicates"), std::string::npos) << notices;
   const Result r = reconcile(d);
   EXPECT_EQ(r.challenge.how, "nothing can be held out");
+  EXPECT_TRUE(std::isnan(r.challenge.gap.after)) << r.challenge.gap.after;
   EXPECT_EQ(r.fit.noise.output[0].from, "fast part");
   EXPECT_NE(r.decide.verdict, "agree");
 }
