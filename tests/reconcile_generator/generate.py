@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Labelled datasets with a hidden effect: generate.py OUT SEED COUNT. Data go to OUT/data, labels to OUT/labels.
+"""Labelled datasets with a hidden effect: generate.py OUT SEED COUNT [RIG...] [null]. Data go to OUT/data, labels to OUT/labels;
+with rigs only theirs, with "null" only sets in which nothing is missing.
 Kinds: null, wrong-parameter, single, double, outside, unidentifiable. Nuisances that must not be named: gain errors to 1 %, jitter of the
 clock, 12-16 bits, scatter of specimens, AR(1) or mixed noise of 0.5-10 % of full scale."""
 import csv
@@ -190,10 +191,11 @@ def text(key, v):
 
 def main():
     out, seed, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-    only = sys.argv[4:] or None
+    only = [word for word in sys.argv[4:] if word != 'null'] or None
+    kinds = ['null'] * 3 + ['wrong-parameter'] if 'null' in sys.argv[4:] else KINDS
     for i in range(count):
         cls = RIGS[i % len(RIGS)]
-        kind = KINDS[(i // len(RIGS)) % len(KINDS)]
+        kind = kinds[(i // len(RIGS)) % len(kinds)]
         if only and cls.rig not in only:
             continue
         if os.path.exists(os.path.join(out, 'labels', f'{cls.rig}-{i:04d}.json')):
