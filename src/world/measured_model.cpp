@@ -164,6 +164,13 @@ MeasuredModel MeasuredModel::load(const std::string& path) {
   return m;
 }
 
+/// Linear tetrahedra lock where tissue is nearly incompressible (a blade met 30 times the force at 0.4999): beyond what the scene's elements bear, `most`, the modulus makes up
+/// for it by E/(1 - nu^2), which is what a blade on a half space feels.
+static void take_poisson(FemMaterial& tissue, double measured, double most) {
+  tissue.poisson = std::min(measured, std::max(most, tissue.poisson));
+  tissue.young *= (1.0 - tissue.poisson * tissue.poisson) / (1.0 - measured * measured);
+}
+
 void MeasuredModel::refuse_rig(const std::string& scene, const std::string& rigs) const { throw InputError(file_, "rig", rig_, rigs + ": the scene of " + scene + " shows nothing of another rig"); }
 
 void MeasuredModel::apply(BrainModel& brain, double dt, double compression) const {
@@ -175,7 +182,7 @@ void MeasuredModel::apply(BrainModel& brain, double dt, double compression) cons
       for (FemMaterial& tissue : brain.regions) tissue.young *= factor;
   }
   if (poisson_)
-    for (FemMaterial& tissue : brain.regions) tissue.poisson = *poisson_;
+    for (FemMaterial& tissue : brain.regions) take_poisson(tissue, *poisson_, brain.fem.averaged_pressure ? 0.49 : 0.45);
   apply_tissue(brain);
   if (relaxation_.empty()) return;
   brain.fem.relaxation.clear();

@@ -1,7 +1,7 @@
 #pragma once
 // A model as `filum reconcile` writes it (filum-model/1: a rig's baseline with the effects its measurements showed) put into a scene.
 //   tissue-block, spatula-press -> a scene with a brain: youngs_modulus of the grey matter, white keeping its ratio to grey,
-//     poissons_ratio of both; viscoelastic-relaxation as a Prony series in place of the scene's own relaxation, with the modulus that of
+//     poissons_ratio of both, as far as the scene's elements bear it (0.45; 0.49 with averaged pressure: beyond, E/(1 - nu^2) is kept instead); viscoelastic-relaxation as a Prony series in place of the scene's own relaxation, with the modulus that of
 //     a sudden load (g(0) = 1), as in the rig;
 //     strain-stiffening, first-cycle-softening (of a press with the number `local_strain_square`, by which depth over height becomes the tissue's own
 //     strain), tension-compression-asymmetry of a block, permanent-set in each element (physics/tissue_law); poroelastic-drainage through the surface that no blade covers (physics/pore_flow).

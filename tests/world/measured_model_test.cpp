@@ -88,6 +88,15 @@ TEST_F(MeasuredModelTest, RetractionForceRelaxesAsMeasuredAndStiffnessIsTheMeasu
   EXPECT_NEAR(half.back() / relaxed.back(), 0.5, 0.02);
 }
 
+/// The elements would lock, and a blade meet 30 times the force; in a half space E/(1 - nu^2) is what it feels.
+TEST_F(MeasuredModelTest, NearlyIncompressibleTissueIsPressedAsInAHalfSpace) {
+  const auto retracted = [this](const std::string& poisson) {
+    return retraction(scene("press-to-target", file("tissue-block", "{ youngs_modulus: { value: \"2900 Pa\" }, poissons_ratio: { value: \"" + poisson + "\" } }", " []"))).back();
+  };
+  EXPECT_NEAR(retracted("0.4999") / retracted("0.45"), (1.0 - 0.45 * 0.45) / (1.0 - 0.4999 * 0.4999), 0.01);
+  EXPECT_LT(retracted("0.3"), retracted("0.45"));
+}
+
 TEST_F(MeasuredModelTest, WhatIsOffLeavesTheOldStatesBitForBit) {
   const std::string own = "{ youngs_modulus: { value: \"2900 Pa\" }, poissons_ratio: { value: \"0.45\" } }";
   World plain(scene("press-to-target"));
