@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include "base/ensure.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/units.h"
@@ -353,7 +354,9 @@ void Dataset::note(const std::string& text) {
 }
 
 const Channel& Dataset::channel(const std::string& name) const {
-  return *std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == name; });
+  const auto found = std::find_if(channels.begin(), channels.end(), [&](const Channel& c) { return c.name == name; });
+  ENSURE(found != channels.end(), "a channel of the dataset");
+  return *found;
 }
 
 std::string Dataset::protocol_text(const Trial& trial) const {

@@ -147,9 +147,9 @@ std::vector<HardwareCheck> check_units(const Dataset& d, const std::vector<Estim
       if (std::isfinite(v)) there.push_back(v);
     if (there.empty()) return;
     const double found = size(there);
+    if (found >= low && found <= high) return;
     const Channel& c = d.channel(channel);
-    if (found < low || found > high)
-      out.push_back({"unit", t.file + ", " + channel, text("%s %.3g %s, expected %.3g to %.3g: is the unit wrong by 1000?", what, found / c.scale, c.unit.c_str(), low / c.scale, high / c.scale)});
+    out.push_back({"unit", t.file + ", " + channel, text("%s %.3g %s, expected %.3g to %.3g: is the unit wrong by 1000?", what, found / c.scale, c.unit.c_str(), low / c.scale, high / c.scale)});
   };
   const auto typical = [](const std::vector<double>& v) { return median(v); };
   const auto largest = [](const std::vector<double>& v) { return std::max(std::abs(*std::min_element(v.begin(), v.end())), std::abs(*std::max_element(v.begin(), v.end()))); };
