@@ -21,7 +21,7 @@ struct RunOptions {
   double motion_scale = 1.0;
   double stiffness = 1.0;
   int stream_port = 0;     // of OpenIGTLink, 0 none
-  double longest = 600.0;  // [s]
+  double longest = LiveOptions{}.longest;  // [s]
 };
 
 std::string hash_text_of(std::uint64_t hash) {

@@ -21,8 +21,9 @@
 // radius (default: unchanged) and rise (default: 0) lead. A key may be given in the frame of what is seen at the moment the hand sets out
 // for it, and so are those after it until the next `at` (sight.h says which way the axes point; `at: {}` is the scene again):
 //       - { t: 4 s, at: { needle: 3.4 mm }, p: [2 mm, 0 mm, 0 mm], handle: [0, 0, 1], opening: [1, 0, 0] }
-//   at: { needle: ARC from the swage } { thread: LENGTH, from: swage | end } { entry: N } { exit: N } { tool: N }; N as in "the first way
-//   through the tissue" from 1, tools from 0. With `axes: scene` the place is seen and directions stay the scene's; with `bring: ARC` the
+//   at: { needle: ARC from the swage } { thread: LENGTH, from: swage | end }
+//   { knot: LENGTH from it, from: swage | end } { entry: N } { exit: N } { edge: N } { tool: N }; N as in "the first way
+//   through the tissue" from 1, stumps and tools from 0. With `axes: scene` the place is seen and directions stay the scene's; with `bring: ARC` the
 //   keys are poses of the needle there (opening: outwards, handle: its normal), and the tool carries it as it then holds it. With
 //   `follow: true` the hand does not look once but all the way, and goes after what moves (with a lag of 0.1 s); what it loses sight of it
 //   expects where it was.
@@ -59,28 +60,30 @@ Vec3 read_direction(const YamlNode& node, const std::string& key) {
 
 /// `at: { ... }` of a key.
 PoseLook read_look(const YamlNode& node, int tool) {
-  static const std::pair<const char*, Look::Kind> kKinds[] = {{"needle", Look::Kind::needle}, {"thread", Look::Kind::thread}, {"entry", Look::Kind::entry},
-                                                              {"exit", Look::Kind::exit},     {"tool", Look::Kind::tool}};
-  static const std::string kWords[] = {"needle", "thread", "entry", "exit", "tool", "from", "axes", "bring", "follow"};
+  static const std::pair<const char*, Look::Kind> kKinds[] = {{"needle", Look::Kind::needle}, {"thread", Look::Kind::thread}, {"knot", Look::Kind::knot}, {"entry", Look::Kind::entry},
+                                                              {"exit", Look::Kind::exit},     {"edge", Look::Kind::edge},     {"tool", Look::Kind::tool}};
+  static const std::string kWords[] = {"needle", "thread", "knot", "entry", "exit", "edge", "tool", "from", "axes", "bring", "follow"};
   for (const std::string& key : node.keys())
-    if (std::find(std::begin(kWords), std::end(kWords), key) == std::end(kWords)) node.refuse(key, "needle, thread, entry, exit or tool, with from, axes, bring, follow");
+    if (std::find(std::begin(kWords), std::end(kWords), key) == std::end(kWords)) node.refuse(key, "needle, thread, knot, entry, exit, edge or tool, with from, axes, bring, follow");
   PoseLook look;
   for (const auto& [name, kind] : kKinds) {
     if (!node.has(name)) continue;
-    if (look.at.kind != Look::Kind::scene) node.refuse(name, "one of needle, thread, entry, exit, tool");
+    if (look.at.kind != Look::Kind::scene) node.refuse(name, "one of needle, thread, knot, entry, exit, edge, tool");
     look.at.kind = kind;
-    if (kind == Look::Kind::needle || kind == Look::Kind::thread)
+    if (kind == Look::Kind::needle || kind == Look::Kind::thread || kind == Look::Kind::knot)
       look.at.length = node.quantity(name, "m", Range::between(0.0, 1.0));
     else if (kind == Look::Kind::tool)
       look.at.index = node.integer(name, 0, kMaxTools - 1);
+    else if (kind == Look::Kind::edge)
+      look.at.index = node.integer(name, 0, 1);
     else
       look.at.index = node.integer(name, 1, 40) - 1;
   }
-  if (look.at.kind == Look::Kind::thread) look.at.from_end = node.choice("from", {"swage", "end"}) == "end";
+  if (look.at.kind == Look::Kind::thread || look.at.kind == Look::Kind::knot) look.at.from_end = node.choice("from", {"swage", "end"}) == "end";
   if (node.has("axes")) look.at.scene_axes = node.choice("axes", {"scene"}) == "scene";
   if (node.has("bring")) look.bring = node.quantity("bring", "m", Range::between(0.0, 0.05));
   look.follow = node.flag_or("follow", false);
-  if (look.follow && look.at.kind == Look::Kind::scene) node.refuse("follow", "something to follow: needle, thread, entry, exit or tool");
+  if (look.follow && look.at.kind == Look::Kind::scene) node.refuse("follow", "something to follow: needle, thread, knot, entry, exit, edge or tool");
   if (look.follow && look.at.kind == Look::Kind::tool && look.at.index == tool) node.refuse("tool", "another tool than the one that follows");
   if (look.bring && look.at.kind == Look::Kind::tool && look.at.index == tool) node.refuse("tool", "another tool than the one that brings the needle");
   return look;

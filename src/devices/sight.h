@@ -9,11 +9,13 @@ namespace filum {
 /// A frame to be found. Axes:
 ///   needle  at `length` [m] along its wire from the swage: x outwards, y towards the point, z along the needle's normal
 ///   thread  at `length` [m] from the swage or, `from_end`, from the free end: x towards the swage, z as near to upright as may be
+///   knot    at `length` [m] along the strand that runs from the thread's own knot to the swage or, `from_end`, to the free end; axes as of thread
 ///   entry, exit  of way number `index` (from 0) through the tissue: x, y, z of the scene
+///   edge    of stump number `index` (0 or 1) of a vessel that is cut across: the highest place where its outer rim passes over the vessel's axis; x, y, z of the scene
 ///   tool    number `index`, as it is (not as commanded): z towards the handle, x the way the jaws open
 ///   scene   the scene itself
 struct Look {
-  enum class Kind { scene, needle, thread, entry, exit, tool } kind = Kind::scene;
+  enum class Kind { scene, needle, thread, knot, entry, exit, edge, tool } kind = Kind::scene;
   int index = 0;
   double length = 0.0;       // [m]
   bool from_end = false;

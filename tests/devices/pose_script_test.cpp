@@ -106,6 +106,8 @@ TEST(PoseScript, RefusesBadFilesByName) {
       {"two objects", "at.exit", "grip: \"0 deg\"", "at: { entry: 1, exit: 1 }"},
       {"thread from nowhere", "at.from", "grip: \"0 deg\"", "at: { thread: \"1 mm\" }"},
       {"way number", "at.exit", "grip: \"0 deg\"", "at: { exit: 0 }"},
+      {"knot from nowhere", "at.from", "grip: \"0 deg\"", "at: { knot: \"1 mm\" }"},
+      {"a third stump", "at.edge", "grip: \"0 deg\"", "at: { edge: 2 }"},
       {"axes", "at.axes", "grip: \"0 deg\"", "at: { exit: 1, axes: needle }"},
       {"at without p", "p", "grip: \"0 deg\"", "at: { exit: 1 }, handle: [0, 0, 1], opening: [1, 0, 0]"},
       {"at without handle", "handle", "grip: \"0 deg\"", "at: { exit: 1 }, p: [\"0 mm\", \"0 mm\", \"0 mm\"], opening: [1, 0, 0]"},

@@ -69,6 +69,62 @@ TEST(SceneEyes, APullIsFeltByItsOwnToolOnly) {
   EXPECT_EQ(s.eyes.felt(-1), 0.0);
 }
 
+TEST(SceneEyes, AKnotBeginsWhereTheStrandFirstComesNearItself) {
+  // along x to 2 mm, round a square of 1 mm back to that place, 30 um above it, and on along x
+  Scene s;
+  const Vec3 way[] = {{0, 0, 0}, {1e-3, 0, 0}, {2e-3, 0, 0}, {3e-3, 0, 0}, {3e-3, 1e-3, 0}, {2e-3, 1e-3, 0}, {2e-3, 0.03e-3, 0.03e-3}, {2e-3, -1e-3, 0}, {2e-3, -2e-3, 0}};
+  s.o.n_nodes = 9;
+  s.o.radius = 15e-6;
+  s.o.positions = Points::Zero(3, 9);
+  s.o.arc.assign(9, 0.0);
+  for (int k = 0; k < 9; ++k) {
+    s.o.positions.col(k) = way[k];
+    if (k > 0) s.o.arc[static_cast<std::size_t>(k)] = s.o.arc[static_cast<std::size_t>(k - 1)] + (way[k] - way[k - 1]).norm();
+  }
+  ASSERT_TRUE(s.eyes.find({.kind = Look::Kind::knot, .length = 0.5e-3, .from_end = true}, s.seen));
+  EXPECT_NEAR((s.seen.p - Vec3(1.5e-3, 0, 0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((s.seen.q * Vec3::UnitX() - Vec3::UnitX()).norm(), 0.0, 1e-12) << "towards the swage";
+  ASSERT_TRUE(s.eyes.find({.kind = Look::Kind::knot, .length = 1.0e-3}, s.seen));
+  EXPECT_LT((s.seen.p - Vec3(2e-3, -0.97e-3, 0)).norm(), 0.03e-3);
+  EXPECT_FALSE(s.eyes.find({.kind = Look::Kind::knot, .length = 2.5e-3, .from_end = true}, s.seen)) << "the strand is shorter";
+  s.o.positions.col(6) += Vec3(0, 0, 0.1e-3);
+  EXPECT_FALSE(s.eyes.find({.kind = Look::Kind::knot, .from_end = true}, s.seen)) << "nothing is near";
+}
+
+TEST(SceneEyes, OfACutEdgeTheTopIsSeenWhereTheVesselsAxisRunsBelow) {
+  // two stumps along y, 1 mm apart, each a ring of four at its cut (outer rim turned by 30 degrees, inner rim below it) and one further off
+  Scene s;
+  TissueDescription& t = s.d.tissue;
+  t.lumen = true;
+  t.thickness = 0.1e-3;
+  t.rest = Points::Zero(3, 24);
+  const auto ring = [&](int first, double y, double radius) {
+    for (int k = 0; k < 4; ++k) {
+      const double turn = std::numbers::pi * (k / 2.0 + 1.0 / 6.0);
+      t.rest.col(first + k) = Vec3(radius * std::cos(turn), y, radius * std::sin(turn));
+    }
+  };
+  for (int side = 0; side < 2; ++side) {
+    const double out = side == 0 ? -1.0 : 1.0;
+    ring(12 * side, 0.5e-3 * out, 0.5e-3);
+    ring(12 * side + 4, 0.5e-3 * out, 0.4e-3);
+    ring(12 * side + 8, 1.0e-3 * out, 0.5e-3);
+  }
+  s.o.tissue.positions = t.rest;
+  const SceneEyes eyes(s.o, s.d);
+  const double top = 0.5e-3 * std::sin(std::numbers::pi / 6.0) + 0.5e-3 * std::cos(std::numbers::pi / 6.0) * std::tan(std::numbers::pi / 12.0);
+  for (int side = 0; side < 2; ++side) {
+    ASSERT_TRUE(eyes.find({.kind = Look::Kind::edge, .index = side}, s.seen));
+    EXPECT_NEAR((s.seen.p - Vec3(0, side == 0 ? -0.5e-3 : 0.5e-3, top)).norm(), 0.0, 1e-12);
+    EXPECT_EQ(s.seen.q.coeffs(), Quat::Identity().coeffs());
+  }
+  s.o.tissue.positions.col(12) += Vec3(0, 0.2e-3, 0);  // as the edge goes, not as it was at rest
+  s.o.tissue.positions.col(13) += Vec3(0, 0.2e-3, 0);
+  ASSERT_TRUE(eyes.find({.kind = Look::Kind::edge, .index = 1}, s.seen));
+  EXPECT_NEAR(s.seen.p.y(), 0.7e-3, 1e-12);
+  EXPECT_FALSE(s.eyes.find({.kind = Look::Kind::edge, .index = 0}, s.seen)) << "of a scene without a vessel";
+}
+
 TEST(SceneEyes, NeedlesFrameFollowsItsCurve) {
   Scene s;
   EXPECT_FALSE(s.eyes.find({.kind = Look::Kind::needle}, s.seen)) << "there is none";
