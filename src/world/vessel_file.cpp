@@ -33,8 +33,28 @@ WallLayer read_layer(const YamlNode& node) {
   return l;
 }
 
-/// Two flaps that face each other across a straight cut along x; uncut: one alone, about the centre, with a free border at the back.
-VesselMesh read_card(const YamlNode& node, double thickness) {
+/// A frame holds the card on all sides and covers its border: thread that runs over it meets no rim to catch on.
+void frame_all_round(VesselMesh& mesh) {
+  for (const WallFace& f : mesh.faces) {
+    if (f.surface != WallSurface::edge) continue;
+    for (const int c : f.corner) mesh.held.push_back(mesh.elements[static_cast<std::size_t>(f.element)][static_cast<std::size_t>(c)]);
+  }
+  std::erase_if(mesh.faces, [](const WallFace& f) { return f.surface == WallSurface::edge || f.surface == WallSurface::end; });
+}
+
+double poisson_ratio(const WallLaw& law) { return 0.5 * law.lambda / (law.lambda + law.mu); }
+
+/// Stretched alike along x and y onto its frame: without stress it would be smaller and thicker.
+void stretch_card(VesselMesh& mesh, double stretch, double poisson) {
+  const double thicker = 1.0 + 2.0 * poisson / (1.0 - poisson) * (stretch - 1.0);
+  for (Corners& c : mesh.stress_free) {
+    c.topRows<2>() /= stretch;
+    c.row(2) *= thicker;
+  }
+}
+
+/// Two flaps that face each other across a straight cut along x; uncut: one alone in a frame, about the centre.
+VesselMesh read_card(const YamlNode& node, double thickness, double poisson) {
   CardShape shape;
   shape.thickness = thickness;
   shape.width = node.quantity("width", "mm", kTissueLength);
@@ -48,6 +68,8 @@ VesselMesh read_card(const YamlNode& node, double thickness) {
   if (node.flag_or("uncut", false)) {
     X.p = at + 0.5 * shape.depth * Vec3::UnitY();
     append(mesh, flap, X);
+    frame_all_round(mesh);
+    stretch_card(mesh, node.number_or("stretch", 1.0, Range::between(1.0, 1.5)), poisson);
     return mesh;
   }
   const double gap = node.quantity("gap", "mm", Range::between(0.0, kMostGap));
@@ -63,7 +85,7 @@ void read_flaps(const YamlNode& node, VesselModel& v) {
   v.name = node.text("name");
   for (const YamlNode& layer : node.items("layers")) v.layers.push_back(read_layer(layer));
   for (const WallLayer& l : v.layers) v.thickness += l.thickness;
-  v.mesh = read_card(node, v.thickness);
+  v.mesh = read_card(node, v.thickness, poisson_ratio(v.layers.front().law));
   v.wall.damping = node.quantity("damping", "1/s", Range::between(0.0, kMostDamping));
 }
 

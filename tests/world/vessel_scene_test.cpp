@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "world/model.h"
@@ -44,6 +45,31 @@ TEST(VesselScene, JawPressesTheCardDownAndFeelsIt) {
   }
   EXPECT_LT(deepest, -0.15e-3) << "below where it lay";
   EXPECT_GT(felt, 1e-4);
+}
+
+/// The sheet of the needle course is stretched over its frame: it lies still, and a closed jaw is held up by its tension T as by a membrane,
+/// F / w = 2 pi T / ln(b / a), a the jaw's radius and b half the sheet's width.
+TEST(VesselScene, StretchedCardLiesStillAndHoldsAgainstAJaw) {
+  static const auto course = load_model(FILUM_SOURCE_DIR, "needle-course");
+  World w(course);
+  Inputs in;
+  const Points before = w.observation().tissue.positions;
+  for (int k = 0; k < 200; ++k) w.step(in);
+  EXPECT_LT((w.observation().tissue.positions - before).cwiseAbs().maxCoeff(), 5e-6);
+  ToolInput& t = in.tools[0];
+  t.valid = true;
+  t.grip_angle = 0.0;
+  double felt = 0.0;
+  for (int k = 0; k < 900; ++k) {
+    t.X_WD.p = Vec3(0.0, 0.0, 1.5e-3 - std::min(k, 750) * 2e-6);
+    w.step(in);
+    felt = w.observation().tools[0].f_T_W.z();
+  }
+  const double w_most = -w.observation().tissue.positions.row(2).minCoeff() - 75e-6;  // of the underside
+  const double tension = 150e-6 * 1.2e6 / (1.0 - 0.45) * (1.0 - 1.0 / 1.08), membrane = 2.0 * std::numbers::pi * tension / std::log(4.0 / 0.15);
+  EXPECT_GT(w_most, 0.05e-3);
+  EXPECT_NEAR(felt / w_most / membrane, 1.0, 0.4) << "N/m over N/m; the jaw is no point and the sheet is square";
+  for (const WallFace& f : course->vessel->mesh.faces) EXPECT_TRUE(f.surface == WallSurface::inner || f.surface == WallSurface::outer) << "no rim for thread to catch on";
 }
 
 /// Hands that jump about the field, open and close, at up to half a metre a second.
