@@ -1,6 +1,7 @@
 // Geometry, energy, force and stiffness of the rod. What belongs to an edge or a node is computed for four neighbours at once.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -242,11 +243,26 @@ void add_second_derivatives(const Nodes& n, Hessian& h) noexcept {
 /// The first node of an edge takes its vector with -1 and its angle, the second its vector alone.
 constexpr double kFirst[4] = {-1.0, -1.0, -1.0, 1.0}, kSecond[4] = {1.0, 1.0, 1.0, 0.0};
 
-Mat4 lane(const Block& b, int k) noexcept {
-  Mat4 m;
-  for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 4; ++r) m(r, c) = b.at[r][c][k];
-  return m;
+/// A column of a block of each of four nodes, by node.
+struct Columns {
+  Four of[4];
+  explicit Columns(const Four& a, const Four& b, const Four& c, const Four& d) noexcept {
+    const auto low = [](const Four& p, const Four& q) { return __builtin_shufflevector(p.v, q.v, 0, 4, 2, 6); };
+    const auto high = [](const Four& p, const Four& q) { return __builtin_shufflevector(p.v, q.v, 1, 5, 3, 7); };
+    const auto ab = low(a, b), AB = high(a, b), cd = low(c, d), CD = high(c, d);
+    of[0] = Four(__builtin_shufflevector(ab, cd, 0, 1, 4, 5));
+    of[1] = Four(__builtin_shufflevector(AB, CD, 0, 1, 4, 5));
+    of[2] = Four(__builtin_shufflevector(ab, cd, 2, 3, 6, 7));
+    of[3] = Four(__builtin_shufflevector(AB, CD, 2, 3, 6, 7));
+  }
+};
+
+/// The blocks of four nodes, each a matrix.
+void unpack(const Block& b, Mat4* to) noexcept {
+  for (int c = 0; c < 4; ++c) {
+    const Columns column(b.at[0][c], b.at[1][c], b.at[2][c], b.at[3][c]);
+    for (int k = 0; k < kWidth; ++k) store(column.of[k], to[k].data() + 4 * c);
+  }
 }
 
 void scatter(const Hessian& h, int first, int count, const ChainSlots& slots, BlockCholesky& matrix) noexcept {
@@ -262,14 +278,17 @@ void scatter(const Hessian& h, int first, int count, const ChainSlots& slots, Bl
       before_behind.at[r][c] = Four(kFirst[r] * kSecond[c]) * ef;
     }
   }
-  for (int k = 0; k < count; ++k) {
-    const int i = first + k;
-    matrix.add_diagonal(i - 1, lane(before, k));
-    matrix.add_diagonal(i, lane(middle, k));
-    matrix.add_diagonal(i + 1, lane(behind, k));
-    matrix.add(slots.next[i - 1], lane(before_middle, k));
-    matrix.add(slots.next[i], lane(middle_behind, k));
-    matrix.add(slots.second[i - 1], lane(before_behind, k));
+  std::array<std::array<Mat4, kWidth>, 6> each;
+  std::size_t n = 0;
+  for (const Block* b : {&before, &middle, &behind, &before_middle, &middle_behind, &before_behind}) unpack(*b, each[n++].data());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+    const int i = first + static_cast<int>(k);
+    matrix.add_diagonal(i - 1, each[0][k]);
+    matrix.add_diagonal(i, each[1][k]);
+    matrix.add_diagonal(i + 1, each[2][k]);
+    matrix.add(slots.next[i - 1], each[3][k]);
+    matrix.add(slots.next[i], each[4][k]);
+    matrix.add(slots.second[i - 1], each[5][k]);
   }
 }
 

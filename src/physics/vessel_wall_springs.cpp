@@ -72,7 +72,7 @@ Eigen::Vector3f WallSprings::at(const Spring& s, const Eigen::Ref<const Eigen::V
 void WallSprings::number_nodes() noexcept {
   for (const int i : nodes_) mark_[static_cast<std::size_t>(i)] = -1;
   nodes_.clear();
-  for (int k = 0; k < n_; ++k)
+  for (int k = n_; k-- > 0;)  // those of the last springs first: couple() reads no further than it must
     for (const int i : spring(k).given.node) {
       int& place = mark_[static_cast<std::size_t>(i)];
       if (place >= 0) continue;
@@ -107,11 +107,14 @@ void WallSprings::gather_inverse(const WallMatrix& P) noexcept {
 void WallSprings::couple(int j) noexcept {
   const int column = active_[static_cast<std::size_t>(j)];
   const Spring& s = spring(j);
+  int used = 0;  // rows of near_ that are asked for
+  for (int i = j; i < n_; ++i)
+    if (known(active_[static_cast<std::size_t>(i)], column) == 0)
+      for (const int node : spring(i).given.node) used = std::max(used, row_[static_cast<std::size_t>(node)] + 3);
   bool ready = false;
   for (int i = j; i < n_; ++i) {
     const int row = active_[static_cast<std::size_t>(i)];
     if (known(row, column) != 0) continue;
-    const auto used = static_cast<Eigen::Index>(3 * among_.size());
     auto moved = moved_.topRows(used);
     if (!ready) moved.setZero();
     for (std::size_t a = 0; a < 8 && !ready; ++a) {
