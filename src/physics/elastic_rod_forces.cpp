@@ -243,39 +243,34 @@ void add_second_derivatives(const Nodes& n, Hessian& h) noexcept {
 /// The first node of an edge takes its vector with -1 and its angle, the second its vector alone.
 constexpr double kFirst[4] = {-1.0, -1.0, -1.0, 1.0}, kSecond[4] = {1.0, 1.0, 1.0, 0.0};
 
-/// A column of a block of each of four nodes, by node.
-struct Columns {
-  Four of[4];
-  explicit Columns(const Four& a, const Four& b, const Four& c, const Four& d) noexcept {
-    const auto low = [](const Four& p, const Four& q) { return __builtin_shufflevector(p.v, q.v, 0, 4, 2, 6); };
-    const auto high = [](const Four& p, const Four& q) { return __builtin_shufflevector(p.v, q.v, 1, 5, 3, 7); };
-    const auto ab = low(a, b), AB = high(a, b), cd = low(c, d), CD = high(c, d);
-    of[0] = Four(__builtin_shufflevector(ab, cd, 0, 1, 4, 5));
-    of[1] = Four(__builtin_shufflevector(AB, CD, 0, 1, 4, 5));
-    of[2] = Four(__builtin_shufflevector(ab, cd, 2, 3, 6, 7));
-    of[3] = Four(__builtin_shufflevector(AB, CD, 2, 3, 6, 7));
-  }
-};
-
 /// The blocks of four nodes, each a matrix.
 void unpack(const Block& b, Mat4* to) noexcept {
-  for (int c = 0; c < 4; ++c) {
-    const Columns column(b.at[0][c], b.at[1][c], b.at[2][c], b.at[3][c]);
-    for (int k = 0; k < kWidth; ++k) store(column.of[k], to[k].data() + 4 * c);
+  for (int k = 0; k < 4; ++k) {  // column
+    const auto &p = b.at[0][k].v, &q = b.at[1][k].v, &r = b.at[2][k].v, &s = b.at[3][k].v;
+    const auto pq = __builtin_shufflevector(p, q, 0, 4, 2, 6), PQ = __builtin_shufflevector(p, q, 1, 5, 3, 7);
+    const auto rs = __builtin_shufflevector(r, s, 0, 4, 2, 6), RS = __builtin_shufflevector(r, s, 1, 5, 3, 7);
+    store(Four(__builtin_shufflevector(pq, rs, 0, 1, 4, 5)), to[0].data() + 4 * k);
+    store(Four(__builtin_shufflevector(PQ, RS, 0, 1, 4, 5)), to[1].data() + 4 * k);
+    store(Four(__builtin_shufflevector(pq, rs, 2, 3, 6, 7)), to[2].data() + 4 * k);
+    store(Four(__builtin_shufflevector(PQ, RS, 2, 3, 6, 7)), to[3].data() + 4 * k);
   }
 }
 
+/// Of edge vectors and angles (e, theta^{i-1}, f, theta^i) to those of nodes: e = x_i - x_{i-1}, f = x_{i+1} - x_i, theta^{i-1} belongs to node i-1.
+/// The first node of an edge takes its vector with -1 and its angle, the second its vector alone.
 void scatter(const Hessian& h, int first, int count, const ChainSlots& slots, BlockCholesky& matrix) noexcept {
   Block before, middle, behind, before_middle, middle_behind, before_behind;
   for (int r = 0; r < 4; ++r) {
+    const auto by_first = [&](const Four& v) { return r < 3 ? -v : v; };
     for (int c = 0; c < 4; ++c) {
       const Four ee = h.ee.at[r][c], ff = h.ff.at[r][c], ef = h.ef.at[r][c], fe = h.ef.at[c][r];
-      before.at[r][c] = Four(kFirst[r] * kFirst[c]) * ee;
-      middle.at[r][c] = Four(kSecond[r] * kSecond[c]) * ee + Four(kSecond[r] * kFirst[c]) * ef + Four(kFirst[r] * kSecond[c]) * fe + Four(kFirst[r] * kFirst[c]) * ff;
-      behind.at[r][c] = Four(kSecond[r] * kSecond[c]) * ff;
-      before_middle.at[r][c] = Four(kFirst[r]) * (Four(kSecond[c]) * ee + Four(kFirst[c]) * ef);
-      middle_behind.at[r][c] = Four(kSecond[c]) * (Four(kSecond[r]) * ef + Four(kFirst[r]) * ff);
-      before_behind.at[r][c] = Four(kFirst[r] * kSecond[c]) * ef;
+      before.at[r][c] = (r < 3) == (c < 3) ? ee : -ee;
+      middle.at[r][c] = r < 3 ? (c < 3 ? ee - ef - fe + ff : ef - ff) : c < 3 ? fe - ff : ff;
+      before_middle.at[r][c] = by_first(c < 3 ? ee - ef : ef);
+      if (c == 3) continue;
+      if (r < 3) behind.at[r][c] = ff;
+      middle_behind.at[r][c] = r < 3 ? ef - ff : ff;
+      before_behind.at[r][c] = by_first(ef);
     }
   }
   std::array<std::array<Mat4, kWidth>, 6> each;
@@ -299,8 +294,15 @@ void add_stretch_hessian(const RodMaterial& m, const RodState& s, const RodGeome
   const Vec3 t = g.t.col(j);
   double across = force / g.length[j];  // geometric stiffness: a stretched string resists sideways motion
   if (kind == Stiffness::gauss_newton) across = std::max(0.0, across);
-  Mat4 block = Mat4::Zero();
-  block.topLeftCorner<3, 3>() = (k - across) * t * t.transpose() + across * Mat3::Identity();
+  const double more = k - across;
+  const Four along(Four::Vector{more * t.x(), more * t.y(), more * t.z(), 0.0});
+  Mat4 block;
+  for (int c = 0; c < 3; ++c) {  // column by column: what is written number by number is slow to be read as a whole
+    Four unit(0.0);
+    unit.set(c, across);
+    store(along * Four(t[c]) + unit, block.data() + 4 * c);
+  }
+  store(Four(0.0), block.data() + 12);
   matrix.add_diagonal(j, block);
   matrix.add_diagonal(j + 1, block);
   matrix.add(slots.next[j], -block);
@@ -374,7 +376,7 @@ void add_elastic_gradient(const RodMaterial& m, const RodState& s, const RodGeom
     }
     const Four before_angle = n.moment[0] * n.kappa[1] - n.moment[1] * n.kappa[0] - n.torque;
     const Four behind_angle = n.moment[2] * n.kappa[3] - n.moment[3] * n.kappa[2] + n.torque;
-    for (int k = 0; k < n.count; ++k) {  // see kFirst and kSecond
+    for (int k = 0; k < n.count; ++k) {  // as in scatter()
       const int i = first + k;
       const Vec3 e(before.x[k], before.y[k], before.z[k]), f(behind.x[k], behind.y[k], behind.z[k]);
       gradient.col(i - 1).head<3>() -= e;
