@@ -63,6 +63,13 @@ class InTracks {
       if (arc > from_[i] && arc < to_[i]) return true;
     return false;
   }
+  /// All of n samples along an edge that begins at `arc`.
+  bool hold_all(double arc, double length, int n) const noexcept {
+    for (int k = 0; k < n; ++k)
+      if (!hold(sample(arc, length, k, n))) return false;
+    return true;
+  }
+  static double sample(double arc, double length, int k, int n) noexcept { return arc + static_cast<double>(k) / n * length; }
 
  private:
   std::array<double, kMaxTracks> from_, to_;
@@ -146,11 +153,12 @@ void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState
   const InTracks in_tracks(tracks, whole);
   double arc = thread.arc_start;
   for (int i = 0; i + 1 < thread.n && s.n < kMostTouches; arc += thread.rest_length[i++]) {
+    const int n = thread.alive[i] == 0 ? 1 : static_cast<int>(std::ceil(thread.rest_length[i] / kSpacing));
+    if (in_tracks.hold_all(arc, thread.rest_length[i], n)) continue;
     const Vec3 a = before_.col(i), b = before_.col(i + 1), to_a = thread.x.col(i), to_b = thread.x.col(i + 1), beside = Vec3::Constant(reach);
     if (!wall.near(a.cwiseMin(b).cwiseMin(to_a).cwiseMin(to_b) - beside, a.cwiseMax(b).cwiseMax(to_a).cwiseMax(to_b) + beside)) continue;
-    const int n = thread.alive[i] == 0 ? 1 : static_cast<int>(std::ceil(thread.rest_length[i] / kSpacing));
     for (int k = 0; k < n && s.n < kMostTouches; ++k) {
-      const double f = static_cast<double>(k) / n, at = arc + f * thread.rest_length[i];
+      const double f = static_cast<double>(k) / n, at = InTracks::sample(arc, thread.rest_length[i], k, n);
       if (in_tracks.hold(at) || spoken_for(s, at)) continue;  // before the wall is searched: it costs most
       const Vec3 now = (1.0 - f) * to_a + f * to_b;
       Vec3 before = (1.0 - f) * a + f * b;
