@@ -72,7 +72,7 @@ Eigen::Vector3f WallSprings::at(const Spring& s, const Eigen::Ref<const Eigen::V
 void WallSprings::number_nodes() noexcept {
   for (const int i : nodes_) mark_[static_cast<std::size_t>(i)] = -1;
   nodes_.clear();
-  for (int k = n_; k-- > 0;)  // those of the last springs first: couple() reads no further than it must
+  for (int k = 0; k < n_; ++k)
     for (const int i : spring(k).given.node) {
       int& place = mark_[static_cast<std::size_t>(i)];
       if (place >= 0) continue;
@@ -89,10 +89,8 @@ void WallSprings::gather_inverse(const WallMatrix& P) noexcept {
     among_.clear();
   }
   first_ = false;
-  for (const int n : nodes_) {
-    int& row = row_[static_cast<std::size_t>(n)];
-    if (row >= 0) continue;
-    row = 3 * static_cast<int>(among_.size());
+  const auto take_in = [&](int n) {
+    const int row = row_[static_cast<std::size_t>(n)] = 3 * static_cast<int>(among_.size());
     among_.push_back(n);
     for (std::size_t i = 0; i < among_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(3 * i);
@@ -100,7 +98,10 @@ void WallSprings::gather_inverse(const WallMatrix& P) noexcept {
       near_.block<3, 3>(k, row) = joined ? P.inverse(among_[i], n) : Eigen::Matrix3f(Eigen::Matrix3f::Zero());
       near_.block<3, 3>(row, k) = joined ? P.inverse(n, among_[i]) : Eigen::Matrix3f(Eigen::Matrix3f::Zero());
     }
-  }
+  };
+  for (int k = n_; k-- > 0;)  // those of the last springs first: couple() reads no further than it must
+    for (const int n : spring(k).given.node)
+      if (row_[static_cast<std::size_t>(n)] < 0) take_in(n);
 }
 
 /// What is not yet known of the j-th spring's column of L^T W L.
