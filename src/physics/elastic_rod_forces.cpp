@@ -103,6 +103,19 @@ void follow_nodes(int i, RodGeometry& g) noexcept {
   store(load(&g.theta[i]) - load(&g.theta[i - 1]) + twist, &g.twist[i]);
 }
 
+/// Four columns of four numbers, by row.
+struct Turned {
+  Turned(const Four& a, const Four& b, const Four& c, const Four& d) noexcept {
+    const auto ab = __builtin_shufflevector(a.v, b.v, 0, 4, 2, 6), AB = __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7);
+    const auto cd = __builtin_shufflevector(c.v, d.v, 0, 4, 2, 6), CD = __builtin_shufflevector(c.v, d.v, 1, 5, 3, 7);
+    row[0] = Four(__builtin_shufflevector(ab, cd, 0, 1, 4, 5));
+    row[1] = Four(__builtin_shufflevector(AB, CD, 0, 1, 4, 5));
+    row[2] = Four(__builtin_shufflevector(ab, cd, 2, 3, 6, 7));
+    row[3] = Four(__builtin_shufflevector(AB, CD, 2, 3, 6, 7));
+  }
+  Four row[4];
+};
+
 /// What four inner nodes from node `first` on need for force and stiffness. Names as in Bergou et al. 2008 and 2010: e and f are the edges
 /// before and behind a node, tt the tilde tangent.
 struct Nodes {
@@ -124,6 +137,17 @@ Nodes::Nodes(const RodMaterial& m, const RodState& s, const RodGeometry& g, int 
   for (int r = 0; r < 4; ++r) {
     kappa[r] = load(&g.kappa(r, first));
     moment[r] = Four(0.0);
+  }
+  if (count == kWidth && joined(s, first) && joined(s, first + 1) && joined(s, first + 2) && joined(s, first + 3)) {
+    // numbers set one by one are slow to be read as four
+    const Four over = Four(1.0) / (Four(0.5) * (load(&s.rest_length[first - 1]) + load(&s.rest_length[first])));
+    bending = Four(0.5 * m.EI) * over;
+    twisting = Four(m.GJ) * over;
+    torque = twisting * (load(&g.twist[first]) - load(&s.rest_twist[first]));
+    const double* const rest = s.rest_kappa.data() + 4 * first;
+    const Turned kappa_0(load(rest), load(rest + 4), load(rest + 8), load(rest + 12));
+    for (int r = 0; r < 4; ++r) moment[r] = bending * (kappa[r] - kappa_0.row[r]);
+    return;
   }
   for (int k = 0; k < count; ++k) {
     const int i = first + k;
@@ -239,20 +263,14 @@ void add_second_derivatives(const Nodes& n, Hessian& h) noexcept {
   h.ff.at[3][3] -= half * dot(n.kb, mf);
 }
 
-/// Of edge vectors and angles (e, theta^{i-1}, f, theta^i) to those of nodes: e = x_i - x_{i-1}, f = x_{i+1} - x_i, theta^{i-1} belongs to node i-1.
-/// The first node of an edge takes its vector with -1 and its angle, the second its vector alone.
-constexpr double kFirst[4] = {-1.0, -1.0, -1.0, 1.0}, kSecond[4] = {1.0, 1.0, 1.0, 0.0};
-
 /// The blocks of four nodes, each a matrix.
 void unpack(const Block& b, Mat4* to) noexcept {
-  for (int k = 0; k < 4; ++k) {  // column
-    const auto &p = b.at[0][k].v, &q = b.at[1][k].v, &r = b.at[2][k].v, &s = b.at[3][k].v;
-    const auto pq = __builtin_shufflevector(p, q, 0, 4, 2, 6), PQ = __builtin_shufflevector(p, q, 1, 5, 3, 7);
-    const auto rs = __builtin_shufflevector(r, s, 0, 4, 2, 6), RS = __builtin_shufflevector(r, s, 1, 5, 3, 7);
-    store(Four(__builtin_shufflevector(pq, rs, 0, 1, 4, 5)), to[0].data() + 4 * k);
-    store(Four(__builtin_shufflevector(PQ, RS, 0, 1, 4, 5)), to[1].data() + 4 * k);
-    store(Four(__builtin_shufflevector(pq, rs, 2, 3, 6, 7)), to[2].data() + 4 * k);
-    store(Four(__builtin_shufflevector(PQ, RS, 2, 3, 6, 7)), to[3].data() + 4 * k);
+  for (int c = 0; c < 4; ++c) {
+    const Turned column(b.at[0][c], b.at[1][c], b.at[2][c], b.at[3][c]);
+    store(column.row[0], to[0].data() + 4 * c);
+    store(column.row[1], to[1].data() + 4 * c);
+    store(column.row[2], to[2].data() + 4 * c);
+    store(column.row[3], to[3].data() + 4 * c);
   }
 }
 
