@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -9,6 +11,30 @@ namespace filum {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::max();
+
+using Quad = float __attribute__((vector_size(16)));
+using QuadBits = std::int32_t __attribute__((vector_size(16)));
+
+Quad load(const std::array<float, 4>& a) noexcept {
+  Quad q;
+  std::memcpy(&q, a.data(), sizeof q);
+  return q;
+}
+bool any(const QuadBits& q) noexcept {
+  std::array<std::uint64_t, 2> halves;
+  std::memcpy(halves.data(), &q, sizeof q);
+  return (halves[0] | halves[1]) != 0;
+}
+
+/// The least float that is no less, the greatest that is no more: a float lies beyond a number just when it lies beyond these.
+float at_least(double v) noexcept {
+  const auto f = static_cast<float>(v);
+  return f < v ? std::nextafterf(f, std::numeric_limits<float>::infinity()) : f;
+}
+float at_most(double v) noexcept {
+  const auto f = static_cast<float>(v);
+  return f > v ? std::nextafterf(f, -std::numeric_limits<float>::infinity()) : f;
+}
 
 }  // namespace
 
@@ -101,24 +127,44 @@ void SurfaceTree::refit(const Points& positions) noexcept {
   }
 }
 
-void SurfaceTree::overlaps(const Box& box, std::vector<int>& found) const noexcept {
+/// Leaves whose box meets `box`, for as long as `take` wants more of them.
+template <class Take>
+void SurfaceTree::visit(const Box& box, const Take& take) const noexcept {
   if (triangles_.empty()) return;
+  Quad low = Quad{} - kFar, high = Quad{} + kFar;
+  for (int c = 0; c < 3; ++c) {
+    low[c] = at_least(box.low[c]);
+    high[c] = at_most(box.high[c]);
+  }
   std::array<int, 64> stack;  // deeper than the tree: median cuts halve the count
   int depth = 0;
   stack[static_cast<std::size_t>(depth++)] = 0;
   while (depth > 0) {
     const Node& n = nodes_[static_cast<std::size_t>(stack[static_cast<std::size_t>(--depth)])];
-    bool apart = false;
-    for (std::size_t c = 0; c < 3; ++c)
-      apart = apart || n.low[c] > box.high[static_cast<int>(c)] || n.high[c] < box.low[static_cast<int>(c)];
-    if (apart) continue;
+    if (any((load(n.low) > high) | (load(n.high) < low))) continue;
     if (n.count == 0) {
       stack[static_cast<std::size_t>(depth++)] = n.first + 1;
       stack[static_cast<std::size_t>(depth++)] = n.first;
       continue;
     }
-    for (int t = n.first; t < n.first + n.count && found.size() < found.capacity(); ++t) found.push_back(order_[static_cast<std::size_t>(t)]);
+    if (!take(n)) return;
   }
+}
+
+void SurfaceTree::overlaps(const Box& box, std::vector<int>& found) const noexcept {
+  visit(box, [&](const Node& n) {
+    for (int t = n.first; t < n.first + n.count && found.size() < found.capacity(); ++t) found.push_back(order_[static_cast<std::size_t>(t)]);
+    return found.size() < found.capacity();
+  });
+}
+
+bool SurfaceTree::overlaps(const Box& box) const noexcept {
+  bool met = false;
+  visit(box, [&](const Node&) {
+    met = true;
+    return false;
+  });
+  return met;
 }
 
 }  // namespace filum

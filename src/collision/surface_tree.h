@@ -24,6 +24,8 @@ class SurfaceTree {
   void refit(const Points& nodes) noexcept;
   /// Appends the triangles whose leaf's box meets `box`, in a fixed order, up to the capacity of `found`.
   void overlaps(const Box& box, std::vector<int>& found) const noexcept;
+  /// Whether there are any.
+  bool overlaps(const Box& box) const noexcept;
   const std::vector<Triangle>& triangles() const noexcept { return triangles_; }
 
  private:
@@ -33,6 +35,8 @@ class SurfaceTree {
     int first = 0, count = 0;  // leaf: triangles order_[first ...]; inner: children first and first + 1, count 0
     int corner = 0, corners = 0;  // of a leaf: corners_[corner ...]
   };
+  template <class Take>
+  void visit(const Box& box, const Take& take) const noexcept;
   void cut(int node, int first, int count, const Points& centres);
 
   void list_corners();

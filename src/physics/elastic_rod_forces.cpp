@@ -1,6 +1,7 @@
 // Geometry, energy, force and stiffness of the rod. What belongs to an edge or a node is computed for four neighbours at once.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -102,6 +103,19 @@ void follow_nodes(int i, RodGeometry& g) noexcept {
   store(load(&g.theta[i]) - load(&g.theta[i - 1]) + twist, &g.twist[i]);
 }
 
+/// Four columns of four numbers, by row.
+struct Turned {
+  Turned(const Four& a, const Four& b, const Four& c, const Four& d) noexcept {
+    const auto ab = __builtin_shufflevector(a.v, b.v, 0, 4, 2, 6), AB = __builtin_shufflevector(a.v, b.v, 1, 5, 3, 7);
+    const auto cd = __builtin_shufflevector(c.v, d.v, 0, 4, 2, 6), CD = __builtin_shufflevector(c.v, d.v, 1, 5, 3, 7);
+    row[0] = Four(__builtin_shufflevector(ab, cd, 0, 1, 4, 5));
+    row[1] = Four(__builtin_shufflevector(AB, CD, 0, 1, 4, 5));
+    row[2] = Four(__builtin_shufflevector(ab, cd, 2, 3, 6, 7));
+    row[3] = Four(__builtin_shufflevector(AB, CD, 2, 3, 6, 7));
+  }
+  Four row[4];
+};
+
 /// What four inner nodes from node `first` on need for force and stiffness. Names as in Bergou et al. 2008 and 2010: e and f are the edges
 /// before and behind a node, tt the tilde tangent.
 struct Nodes {
@@ -123,6 +137,17 @@ Nodes::Nodes(const RodMaterial& m, const RodState& s, const RodGeometry& g, int 
   for (int r = 0; r < 4; ++r) {
     kappa[r] = load(&g.kappa(r, first));
     moment[r] = Four(0.0);
+  }
+  if (count == kWidth && joined(s, first) && joined(s, first + 1) && joined(s, first + 2) && joined(s, first + 3)) {
+    // numbers set one by one are slow to be read as four
+    const Four over = Four(1.0) / (Four(0.5) * (load(&s.rest_length[first - 1]) + load(&s.rest_length[first])));
+    bending = Four(0.5 * m.EI) * over;
+    twisting = Four(m.GJ) * over;
+    torque = twisting * (load(&g.twist[first]) - load(&s.rest_twist[first]));
+    const double* const rest = s.rest_kappa.data() + 4 * first;
+    const Turned kappa_0(load(rest), load(rest + 4), load(rest + 8), load(rest + 12));
+    for (int r = 0; r < 4; ++r) moment[r] = bending * (kappa[r] - kappa_0.row[r]);
+    return;
   }
   for (int k = 0; k < count; ++k) {
     const int i = first + k;
@@ -238,38 +263,45 @@ void add_second_derivatives(const Nodes& n, Hessian& h) noexcept {
   h.ff.at[3][3] -= half * dot(n.kb, mf);
 }
 
-/// Of edge vectors and angles (e, theta^{i-1}, f, theta^i) to those of nodes: e = x_i - x_{i-1}, f = x_{i+1} - x_i, theta^{i-1} belongs to node i-1.
-/// The first node of an edge takes its vector with -1 and its angle, the second its vector alone.
-constexpr double kFirst[4] = {-1.0, -1.0, -1.0, 1.0}, kSecond[4] = {1.0, 1.0, 1.0, 0.0};
-
-Mat4 lane(const Block& b, int k) noexcept {
-  Mat4 m;
-  for (int c = 0; c < 4; ++c)
-    for (int r = 0; r < 4; ++r) m(r, c) = b.at[r][c][k];
-  return m;
+/// The blocks of four nodes, each a matrix.
+void unpack(const Block& b, Mat4* to) noexcept {
+  for (int c = 0; c < 4; ++c) {
+    const Turned column(b.at[0][c], b.at[1][c], b.at[2][c], b.at[3][c]);
+    store(column.row[0], to[0].data() + 4 * c);
+    store(column.row[1], to[1].data() + 4 * c);
+    store(column.row[2], to[2].data() + 4 * c);
+    store(column.row[3], to[3].data() + 4 * c);
+  }
 }
 
+/// Of edge vectors and angles (e, theta^{i-1}, f, theta^i) to those of nodes: e = x_i - x_{i-1}, f = x_{i+1} - x_i, theta^{i-1} belongs to node i-1.
+/// The first node of an edge takes its vector with -1 and its angle, the second its vector alone.
 void scatter(const Hessian& h, int first, int count, const ChainSlots& slots, BlockCholesky& matrix) noexcept {
   Block before, middle, behind, before_middle, middle_behind, before_behind;
   for (int r = 0; r < 4; ++r) {
+    const auto by_first = [&](const Four& v) { return r < 3 ? -v : v; };
     for (int c = 0; c < 4; ++c) {
       const Four ee = h.ee.at[r][c], ff = h.ff.at[r][c], ef = h.ef.at[r][c], fe = h.ef.at[c][r];
-      before.at[r][c] = Four(kFirst[r] * kFirst[c]) * ee;
-      middle.at[r][c] = Four(kSecond[r] * kSecond[c]) * ee + Four(kSecond[r] * kFirst[c]) * ef + Four(kFirst[r] * kSecond[c]) * fe + Four(kFirst[r] * kFirst[c]) * ff;
-      behind.at[r][c] = Four(kSecond[r] * kSecond[c]) * ff;
-      before_middle.at[r][c] = Four(kFirst[r]) * (Four(kSecond[c]) * ee + Four(kFirst[c]) * ef);
-      middle_behind.at[r][c] = Four(kSecond[c]) * (Four(kSecond[r]) * ef + Four(kFirst[r]) * ff);
-      before_behind.at[r][c] = Four(kFirst[r] * kSecond[c]) * ef;
+      before.at[r][c] = (r < 3) == (c < 3) ? ee : -ee;
+      middle.at[r][c] = r < 3 ? (c < 3 ? ee - ef - fe + ff : ef - ff) : c < 3 ? fe - ff : ff;
+      before_middle.at[r][c] = by_first(c < 3 ? ee - ef : ef);
+      if (c == 3) continue;
+      if (r < 3) behind.at[r][c] = ff;
+      middle_behind.at[r][c] = r < 3 ? ef - ff : ff;
+      before_behind.at[r][c] = by_first(ef);
     }
   }
-  for (int k = 0; k < count; ++k) {
-    const int i = first + k;
-    matrix.add_diagonal(i - 1, lane(before, k));
-    matrix.add_diagonal(i, lane(middle, k));
-    matrix.add_diagonal(i + 1, lane(behind, k));
-    matrix.add(slots.next[i - 1], lane(before_middle, k));
-    matrix.add(slots.next[i], lane(middle_behind, k));
-    matrix.add(slots.second[i - 1], lane(before_behind, k));
+  std::array<std::array<Mat4, kWidth>, 6> each;
+  std::size_t n = 0;
+  for (const Block* b : {&before, &middle, &behind, &before_middle, &middle_behind, &before_behind}) unpack(*b, each[n++].data());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+    const int i = first + static_cast<int>(k);
+    matrix.add_diagonal(i - 1, each[0][k]);
+    matrix.add_diagonal(i, each[1][k]);
+    matrix.add_diagonal(i + 1, each[2][k]);
+    matrix.add(slots.next[i - 1], each[3][k]);
+    matrix.add(slots.next[i], each[4][k]);
+    matrix.add(slots.second[i - 1], each[5][k]);
   }
 }
 
@@ -280,8 +312,15 @@ void add_stretch_hessian(const RodMaterial& m, const RodState& s, const RodGeome
   const Vec3 t = g.t.col(j);
   double across = force / g.length[j];  // geometric stiffness: a stretched string resists sideways motion
   if (kind == Stiffness::gauss_newton) across = std::max(0.0, across);
-  Mat4 block = Mat4::Zero();
-  block.topLeftCorner<3, 3>() = (k - across) * t * t.transpose() + across * Mat3::Identity();
+  const double more = k - across;
+  const Four along(Four::Vector{more * t.x(), more * t.y(), more * t.z(), 0.0});
+  Mat4 block;
+  for (int c = 0; c < 3; ++c) {  // column by column: what is written number by number is slow to be read as a whole
+    Four unit(0.0);
+    unit.set(c, across);
+    store(along * Four(t[c]) + unit, block.data() + 4 * c);
+  }
+  store(Four(0.0), block.data() + 12);
   matrix.add_diagonal(j, block);
   matrix.add_diagonal(j + 1, block);
   matrix.add(slots.next[j], -block);
@@ -355,7 +394,7 @@ void add_elastic_gradient(const RodMaterial& m, const RodState& s, const RodGeom
     }
     const Four before_angle = n.moment[0] * n.kappa[1] - n.moment[1] * n.kappa[0] - n.torque;
     const Four behind_angle = n.moment[2] * n.kappa[3] - n.moment[3] * n.kappa[2] + n.torque;
-    for (int k = 0; k < n.count; ++k) {  // see kFirst and kSecond
+    for (int k = 0; k < n.count; ++k) {  // as in scatter()
       const int i = first + k;
       const Vec3 e(before.x[k], before.y[k], before.z[k]), f(behind.x[k], behind.y[k], behind.z[k]);
       gradient.col(i - 1).head<3>() -= e;

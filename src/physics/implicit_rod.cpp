@@ -128,7 +128,7 @@ void ImplicitRod::begin(const RodState& s, const RodMemory& memory, const RodSte
   x_.leftCols(s.n) = s.x.leftCols(s.n);
   theta_.head(s.n) = s.theta.head(s.n);
   set_reference(s, geometry_);
-  geometry_fits_ = false;
+  geometry_fits_ = own_known_ = false;
   extra_inertia_ = 0.0;
   last_energy_ = -std::numeric_limits<double>::infinity();
   for (ObstacleBody& b : obstacles.bodies) b.X_now = b.X_start;
@@ -169,7 +169,7 @@ void ImplicitRod::predict(const RodState& s, const RodMemory& memory, const RodS
   contact_.travel.look_along(move_);
   double fraction = free_fraction(s, memory);
   fit_geometry(s);
-  const double before = energy(s, x_, theta_, o, 0.0);
+  const double before = energy_here(s, o);
   for (int k = 0; k < 2; ++k, fraction *= 0.5) {
     if (try_move(s, fraction, before, o)) break;
   }
@@ -199,7 +199,8 @@ bool ImplicitRod::try_move(const RodState& s, double fraction, double highest, c
   x_trial_.leftCols(s.n) = x_.leftCols(s.n) + fraction * move_.leftCols(s.n).topRows<3>();
   theta_trial_.head(s.n) = theta_.head(s.n) + fraction * move_.leftCols(s.n).row(3).transpose();
   follow_reference(s.n, x_trial_, theta_trial_, geometry_);
-  geometry_fits_ = energy(s, x_trial_, theta_trial_, o, fraction) <= highest;
+  own_ = own_energy(s, x_trial_, theta_trial_, o);
+  geometry_fits_ = own_known_ = touch_energy(own_, s, x_trial_, o, fraction) <= highest;
   if (!geometry_fits_) return false;
   take_reference(s.n, geometry_);
   contact_.travel.went(fraction);
@@ -398,7 +399,7 @@ bool ImplicitRod::advance(const RodState& s, const RodMemory& memory, const RodS
   if (!(slope_ < 0.0)) return false;
   double fraction = free_fraction(s, memory);
   fit_geometry(s);
-  const double before = energy(s, x_, theta_, o, 0.0), highest = std::max(before, last_energy_);
+  const double before = energy_here(s, o), highest = std::max(before, last_energy_);
   last_energy_ = before;
   for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5)
     if (try_move(s, fraction, highest + 1e-4 * fraction * slope_, o)) {
@@ -415,10 +416,11 @@ void ImplicitRod::fit_geometry(const RodState& s) noexcept {
   follow_reference(s.n, x_, theta_, geometry_);
   take_reference(s.n, geometry_);
   geometry_fits_ = true;
+  own_known_ = false;
 }
 
-/// At x and theta, whose geometry is in geometry_.
-double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o, double fraction) noexcept {
+/// Of all but what touches the thread, at x and theta, whose geometry is in geometry_.
+double ImplicitRod::own_energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) const noexcept {
   double u = elastic_energy(stiffened_, s, geometry_);
   const double rho = material.mass_per_length(), dt = o.dt;
   for (int i = 0; i < s.n; ++i) {
@@ -429,8 +431,21 @@ double ImplicitRod::energy(const RodState& s, const Points& x, const Eigen::Vect
     if (i + 1 < s.n) u += 0.5 * spin_inertia(material, s, i) * std::pow((theta[i] - s.theta[i]) / dt - s.theta_dot[i], 2);
     u -= boundary.load.col(i).head<3>().dot(x.col(i)) + boundary.load(3, i) * theta[i];
   }
+  return u;
+}
+
+/// The sum, from what own_energy() says at x.
+double ImplicitRod::touch_energy(double own, const RodState& s, const Points& x, const RodStepOptions& o, double fraction) noexcept {
+  double u = own;
   if (self_contact) u += contact_.energy(x, s.x, material.radius, contact_material, fraction);
   return u + obstacles.energy(x, s.x, material.radius, contact_material, contact_.travel, fraction) + grasps.energy(x) + tethers.energy(x, o.dt);
+}
+
+/// The sum at x_ and theta_; what try_move() has worked out there already is not worked out again.
+double ImplicitRod::energy_here(const RodState& s, const RodStepOptions& o) noexcept {
+  if (!own_known_) own_ = own_energy(s, x_, theta_, o);
+  own_known_ = true;
+  return touch_energy(own_, s, x_, o, 0.0);
 }
 
 void ImplicitRod::finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept {

@@ -103,7 +103,9 @@ class ImplicitRod {
   bool try_move(const RodState& s, double fraction, double highest, const RodStepOptions& o) noexcept;
   bool advance(const RodState& s, const RodMemory& memory, const RodStepOptions& o) noexcept;
   void fit_geometry(const RodState& s) noexcept;
-  double energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o, double fraction) noexcept;
+  double own_energy(const RodState& s, const Points& x, const Eigen::VectorXd& theta, const RodStepOptions& o) const noexcept;
+  double touch_energy(double own, const RodState& s, const Points& x, const RodStepOptions& o, double fraction) noexcept;
+  double energy_here(const RodState& s, const RodStepOptions& o) noexcept;
   void finish(RodState& s, RodMemory& memory, const RodStepOptions& o) noexcept;
 
   RodContact contact_;
@@ -123,6 +125,8 @@ class ImplicitRod {
   double extra_inertia_ = 0.0;  // [1], times the nodes' own, in the matrix only
   double last_energy_ = 0.0;    // [J], at the iterate before, with the loads of then
   bool geometry_fits_ = false;  // geometry_ is that of x_ and theta_
+  bool own_known_ = false;      // own_ is own_energy() there
+  double own_ = 0.0;            // [J]
 };
 
 }  // namespace filum

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -41,7 +43,15 @@ Vec3 trial_bristle(const RodPair& p, const Points& x, const Points& x_start) noe
 /// Two boxes have no point in common.
 template <class Corner>
 bool apart(const Corner& low_a, const Corner& high_a, const Corner& low_b, const Corner& high_b) noexcept {
-  return (low_a - high_b).cwiseMax(low_b - high_a).maxCoeff() > 0.0;
+  using Quad = double __attribute__((vector_size(32)));
+  using QuadBits = std::int64_t __attribute__((vector_size(32)));
+  const auto load = [](const Corner& c) {
+    Quad q;
+    std::memcpy(&q, c.data(), sizeof q);
+    return q;
+  };
+  const QuadBits beyond = (load(low_a) > load(high_b)) | (load(low_b) > load(high_a));
+  return (beyond[0] | beyond[1] | beyond[2] | beyond[3]) != 0;
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "physics/rod_resolution.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
+#include <limits>
 
 #include "base/stage_clock.h"
 
@@ -45,30 +47,50 @@ void renumber(std::vector<ContactBristle>& bristles, int edge, int shift, bool b
   }
 }
 
-struct Near {
-  const RodContact& contact;
-  const RodObstacles& obstacles;
+/// What is near each edge, by the pairs and touches of the last step: their lists are gone through once for a stretch of edges, not once an edge.
+class Near {
+ public:
+  /// `room` [m]: how near another strand or a body must be to an edge's surface to count.
+  Near(const RodContact& contact, const RodObstacles& obstacles, double radius, double room) noexcept
+      : contact_(contact), obstacles_(obstacles), radius_(radius), room_(room) {}
 
-  double shortest_touching(int j, double otherwise, double limit) const noexcept {
-    for (const RodPair& p : contact.pairs())
-      if ((p.i == j || p.j == j) && p.force > 0.0) return limit;
-    return otherwise;
+  bool touched(int j) noexcept { return mark(j), touched_[static_cast<std::size_t>(j - low_)]; }
+  bool any(int j) noexcept { return mark(j), any_[static_cast<std::size_t>(j - low_)]; }
+
+ private:
+  static constexpr int kStretch = 512;  // edges
+
+  /// Makes j and the edge behind it part of the stretch, the rest of which lies before: edges are asked about from the far end.
+  void mark(int j) noexcept {
+    if (j >= low_ && j < low_ + kStretch) return;
+    low_ = std::max(0, j + 2 - kStretch);
+    touched_.reset();
+    any_.reset();
+    for (const RodPair& p : contact_.pairs()) {
+      const bool presses = p.force > 0.0, near = contact_.at_least(p) < 2.0 * radius_ + room_;
+      for (const int edge : {p.i, p.j}) {
+        const auto k = static_cast<std::size_t>(edge - low_);
+        if (edge < low_ || k >= kStretch) continue;
+        if (presses) touched_.set(k);
+        if (near) any_.set(k);
+      }
+    }
+    for (const ObstacleTouch& t : obstacles_.touches())
+      if (t.edge >= low_ && t.edge < low_ + kStretch && obstacles_.at_least(t, contact_.travel) < room_) any_.set(static_cast<std::size_t>(t.edge - low_));
   }
-  /// Whether another strand or a body is within `room` [m] of edge j's surface.
-  bool any(int j, double radius, double room) const noexcept {
-    for (const RodPair& p : contact.pairs())
-      if ((p.i == j || p.j == j) && contact.at_least(p) < 2.0 * radius + room) return true;
-    for (const ObstacleTouch& t : obstacles.touches())
-      if (t.edge == j && obstacles.at_least(t, contact.travel) < room) return true;
-    return false;
-  }
+
+  const RodContact& contact_;
+  const RodObstacles& obstacles_;
+  double radius_, room_;
+  int low_ = std::numeric_limits<int>::max() - kStretch;
+  std::bitset<kStretch> touched_, any_;
 };
 
-bool wants_halving(const ResolutionOptions& o, const RodState& s, const Near& near, int j) noexcept {
+bool wants_halving(const ResolutionOptions& o, const RodState& s, Near& near, int j) noexcept {
   if (s.alive[j] == 0 || s.rest_length[j] < 2.0 * o.shortest) return false;
   if (std::max(turn_at(s, j), turn_at(s, j + 1)) > o.sharp_turn) return true;
   if (s.rest_length[j] > o.longest * 1.5) return true;
-  return s.rest_length[j] > near.shortest_touching(j, o.longest * 2.0, o.touching_edge);
+  return s.rest_length[j] > (near.touched(j) ? o.touching_edge : o.longest * 2.0);
 }
 
 /// Height [m] of node i above the chord of its neighbours: how far the thread jumps if the node goes.
@@ -78,12 +100,11 @@ double height_at(const RodState& s, int i) noexcept {
 }
 
 // With a diameter's room, a jump of less than a radius passes nothing.
-bool may_go(const ResolutionOptions& o, const RodState& s, const Near& near, double radius, int i) noexcept {
+bool may_go(const ResolutionOptions& o, const RodState& s, Near& near, double radius, int i) noexcept {
   if (s.alive[i - 1] == 0 || s.alive[i] == 0) return false;
   if (s.rest_length[i - 1] + s.rest_length[i] > o.longest) return false;
   if (turn_at(s, i) > o.slight_turn || turn_at(s, i - 1) + turn_at(s, i) + turn_at(s, i + 1) > 3.0 * o.slight_turn) return false;
-  return height_at(s, i) < radius && !near.any(i - 1, radius, 2.0 * radius) &&
-         !near.any(i, radius, 2.0 * radius);
+  return height_at(s, i) < radius && !near.any(i - 1) && !near.any(i);
 }
 
 }  // namespace
@@ -140,7 +161,7 @@ void remove_node(RodState& s, int i) noexcept {
 int adapt_resolution(const ResolutionOptions& o, int capacity, double radius, const RodContact& contact, const RodObstacles& obstacles,
                      RodState& s, RodMemory& memory) noexcept {
   const StageScope stage("resolution");
-  const Near near{contact, obstacles};
+  Near near(contact, obstacles, radius, 2.0 * radius);
   int changes = 0;
   // From the far end: a change renumbers only what lies behind it, so the pairs of what is still ahead stay valid.
   for (int j = s.n - 2; j >= 0 && changes < o.most_changes; --j) {

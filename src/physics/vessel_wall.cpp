@@ -94,13 +94,12 @@ std::vector<SlabFactor::Block> first_matrix(const VesselMesh& mesh, const WallEl
 
 /// About what an energy is wrong by. A point's energy is what is left of terms of the size of its shear modulus, so that the sum misses by as much however
 /// small it is; taken for less, steps that led down by less than that were cut to nothing, one after the other. [J]
-double rounding(const WallElements& elements, int n, bool single_precision, double energy) noexcept {
-  double thickness = 0.0, shear = 0.0, volume = 0.0;
+double rounding(const WallElements& elements, double volume, bool single_precision, double energy) noexcept {
+  double thickness = 0.0, shear = 0.0;
   for (const WallLayer& l : elements.layers()) {
     thickness += l.thickness;
     shear += l.law.mu * l.thickness;
   }
-  for (int e = 0; e < n; ++e) volume += elements.volume(e);
   const double unit = 0.5 * (single_precision ? static_cast<double>(std::numeric_limits<float>::epsilon()) : std::numeric_limits<double>::epsilon());
   return std::max((single_precision ? 1e-6 : 1e-12) * std::abs(energy), unit * volume * shear / thickness);
 }
@@ -119,6 +118,7 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   const double per_volume = options_.density * (1.0 + options_.damping * options_.dt) / (options_.dt * options_.dt);
   for (int e = 0; e < mesh_.n_elements(); ++e)
     for (const int i : mesh_.elements[static_cast<std::size_t>(e)]) inertia_[i] += per_volume * elements_.volume(e) / 8.0;
+  for (int e = 0; e < mesh_.n_elements(); ++e) volume_ += elements_.volume(e);
   held_.assign(static_cast<std::size_t>(n), 0);
   for (const int i : mesh_.held) held_[static_cast<std::size_t>(i)] = 1;
   std::vector<Mat3> own;  // directions
@@ -143,6 +143,7 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
     p->setZero(3, n);
   last_.soundness.resize(static_cast<std::size_t>(mesh_.n_elements()));
   turn_.resize(static_cast<std::size_t>(n));
+  single_turn_.resize(turn_.size());
   direction_ = Vector::Zero(3 * n);
   turned_ = steer_ = Eigen::VectorXf::Zero(3 * n);
   options_.memory = std::clamp(options_.memory, 1, kMostPairs);
@@ -231,6 +232,7 @@ void VesselWall::find_frames(const Points& x) noexcept {
     turn_[i] = span * rest_inverse_[i];
     const double J = turn_[i].determinant();
     if (!(J > kLeastStretch && turn_[i].squaredNorm() < kMostStretch)) turn_[i] = frame_of(span);
+    single_turn_[i] = turn_[i].cast<float>();
   }
 }
 
@@ -309,10 +311,10 @@ void VesselWall::precondition(Eigen::VectorXf& b) noexcept {
   const StageScope stage("wall: first matrix");
   const int n = mesh_.n_nodes();
   for (const int i : mesh_.held) b.segment<3>(3 * i).setZero();
-  for (int i = 0; i < n; ++i) turned_.segment<3>(3 * i) = turn_[static_cast<std::size_t>(i)].transpose().cast<float>() * b.segment<3>(3 * i);
+  for (int i = 0; i < n; ++i) turned_.segment<3>(3 * i) = single_turn_[static_cast<std::size_t>(i)].transpose() * b.segment<3>(3 * i);
   matrix_.solve(turned_);
   springs_.correct(matrix_, turned_);
-  for (int i = 0; i < n; ++i) b.segment<3>(3 * i) = turn_[static_cast<std::size_t>(i)].cast<float>() * turned_.segment<3>(3 * i);
+  for (int i = 0; i < n; ++i) b.segment<3>(3 * i) = single_turn_[static_cast<std::size_t>(i)] * turned_.segment<3>(3 * i);
   for (const int i : mesh_.held) b.segment<3>(3 * i).setZero();
 }
 
@@ -350,7 +352,7 @@ void VesselWall::direction(const WallHistory& h) noexcept {
 
 /// Goes along the direction, less far if that turns elements inside out or the energy does not fall.
 bool VesselWall::advance(const WallState& state) noexcept {
-  const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = rounding(elements_, mesh_.n_elements(), options_.single_precision, energy_);
+  const double before = residual_.norm(), slope = flat(residual_).dot(direction_), noise = rounding(elements_, volume_, options_.single_precision, energy_);
   double step = std::min({1.0, kLonger * taken_, longest_move_ / direction_.cwiseAbs().maxCoeff()});
   for (int k = 0; k < kShortenings; ++k) {
     trial_x_ = x_ + step * direction_.reshaped(3, x_.cols());

@@ -174,6 +174,7 @@ class VesselWall {
   WallOptions options_;
   WallElements elements_;
   double longest_move_ = 0.0;         // [m], of a node in one iteration: the wall's thickness
+  double volume_ = 0.0;               // [m3], stress-free
   Eigen::VectorXd inertia_;           // [N/m], of each node, (1 + a h) m / h^2
   std::vector<char> held_;
   std::vector<std::array<int, 6>> neighbours_;  // of each node: inner, outer, before, after, left, right
@@ -200,6 +201,7 @@ class VesselWall {
   bool pressed_ = false;
   double energy_ = 0.0, trial_energy_ = 0.0, taken_ = 1.0;  // taken: share of the last direction
   std::vector<Mat3> turn_;
+  std::vector<Eigen::Matrix3f> single_turn_;  // the same
   Eigen::VectorXd direction_;
   Eigen::VectorXf steer_, turned_;
   WallPairs pairs_;                   // the history's with what springs add in this step

@@ -1,5 +1,7 @@
 #include "physics/vessel_wall_matrix.h"
 
+#include <algorithm>
+
 namespace filum {
 
 WallMatrix::WallMatrix(const VesselMesh& mesh, const std::vector<SlabFactor::Block>& blocks) : part_of_(mesh.node_part) {
@@ -50,13 +52,15 @@ void WallMatrix::subtract(const std::vector<int>& nodes, const Eigen::VectorXf& 
       continue;
     }
     if (!p.asked) work_.segment(3 * p.first, 3 * p.n).setZero();
+    const int ring = p.rings->ring_of(nodes[j] - p.first);
+    p.from = p.asked ? std::min(p.from, ring) : ring;
     p.asked = true;
     work_.segment<3>(3 * nodes[j]) += share;
   }
   for (Part& p : parts_) {
     if (!p.asked) continue;
     auto part = work_.segment(3 * p.first, 3 * p.n);
-    p.rings->solve(part);
+    p.rings->solve(part, p.from);
     x.segment(3 * p.first, 3 * p.n) -= part;
   }
 }

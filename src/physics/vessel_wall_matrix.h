@@ -33,6 +33,7 @@ class WallMatrix {
     SlabFactor slabs;
     Eigen::MatrixXf inverse;  // of one without rings
     bool known = false, asked = false;
+    int from = 0;             // first ring asked about
   };
   std::vector<Part> parts_;
   std::vector<int> part_of_;

@@ -26,9 +26,7 @@ void WallPairs::judge(const Eigen::MatrixXf& s, int p) noexcept {
 
 void WallPairs::note(const Eigen::MatrixXf& s, int p) noexcept {
   each_.noalias() = s.transpose() * answers_.col(p);
-  products_.col(p) = each_.cast<double>();
-  each_.noalias() = answers_.transpose() * s.col(p);
-  products_.row(p) = each_.cast<double>();
+  products_.col(p) = each_.cast<double>();  // the row says what is newer times what is older, which nobody asks
   judge(s, p);
 }
 

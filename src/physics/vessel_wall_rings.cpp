@@ -9,6 +9,7 @@ namespace filum {
 namespace {
 
 constexpr double kAlike = 1e-6;  // of the greatest number: sectors that differ by less are alike
+constexpr int kTogether = 4;     // columns of a product that Eigen works out side by side
 constexpr int kColumns = 64;     // transformed at once, so that products need no memory of their own
 
 /// A ring's matrix or its coupling with the ring before, written out.
@@ -75,8 +76,9 @@ Eigen::MatrixXf transform(int n, int rows, bool odd) {
   return w.cast<float>();
 }
 
-void multiply(const Eigen::MatrixXf& w, const Eigen::MatrixXf& x, Eigen::MatrixXf& y) noexcept {
-  for (Eigen::Index c = 0; c < x.cols(); c += kColumns) {
+/// Of the columns from `from` on, and a few more, so that each is worked out among the same three as ever.
+void multiply(const Eigen::MatrixXf& w, const Eigen::MatrixXf& x, Eigen::Index from, Eigen::MatrixXf& y) noexcept {
+  for (Eigen::Index c = from / kTogether * kTogether; c < x.cols(); c += kColumns) {
     const Eigen::Index n = std::min<Eigen::Index>(kColumns, x.cols() - c);
     y.middleCols(c, n).noalias() = w * x.middleCols(c, n);
   }
@@ -150,9 +152,10 @@ float* RingFactor::mode(int ring, int number, int pack) noexcept {
   return is_odd(number) ? &odd_modes_(kLanes * pack, ring * across_ + node) : &even_modes_(kLanes * pack, 2 * (ring * across_ + node) + c);
 }
 
-void RingFactor::gather(const Eigen::Ref<Eigen::VectorXf>& b) noexcept {
-  const float* v = b.data();
-  for (int r = 0; r < rings_; ++r)
+void RingFactor::gather(const Eigen::Ref<Eigen::VectorXf>& b, int from) noexcept {
+  from = kTogether * (from / kTogether);  // no fewer rings than multiply() reads
+  const float* v = b.data() + static_cast<std::ptrdiff_t>(from) * sectors_ * numbers_;
+  for (int r = from; r < rings_; ++r)
     for (int i = 0; i < sectors_; ++i)
       for (int k = r * across_; k < (r + 1) * across_; ++k, v += 3) {
         even_(i, 2 * k) = v[0];
@@ -181,10 +184,12 @@ void RingFactor::add(const Table& matrix, int at, const Lanes* in, float sign, L
   }
 }
 
-void RingFactor::solve_modes(int pack) noexcept {
+/// Before ring `from` the forward pass would find zeros.
+void RingFactor::solve_modes(int pack, int from) noexcept {
   const Table &inverse = inverse_[static_cast<std::size_t>(pack)], &before = before_[static_cast<std::size_t>(pack)];
   const int q = numbers_, square = q * q;
-  for (int r = 0; r < rings_; ++r) {
+  for (int i = 0; i < from * q; ++i) w_[static_cast<std::size_t>(i)].setZero();
+  for (int r = from; r < rings_; ++r) {
     Lanes *z = &z_[static_cast<std::size_t>(r * q)], *w = &w_[static_cast<std::size_t>(r * q)];
     for (int i = 0; i < q; ++i) {
       z[i] = Eigen::Map<const Lanes>(mode(r, i, pack));
@@ -203,11 +208,12 @@ void RingFactor::solve_modes(int pack) noexcept {
     for (int i = 0; i < q; ++i) Eigen::Map<Lanes>(mode(r, i, pack)) = w_[static_cast<std::size_t>(r * q + i)];
 }
 
-void RingFactor::solve(Eigen::Ref<Eigen::VectorXf> b) noexcept {
-  gather(b);
-  multiply(to_even_, even_, even_modes_);
-  multiply(to_odd_, odd_, odd_modes_);
-  for (int pack = 0; pack < packs_; ++pack) solve_modes(pack);
+void RingFactor::solve(Eigen::Ref<Eigen::VectorXf> b, int from) noexcept {
+  if (sectors_ <= kLanes) from = 0;  // products as small as what would be left Eigen works out another way, to other bits
+  gather(b, from);
+  multiply(to_even_, even_, 2 * across_ * from, even_modes_);
+  multiply(to_odd_, odd_, across_ * from, odd_modes_);
+  for (int pack = 0; pack < packs_; ++pack) solve_modes(pack, from);
   multiply_back(to_even_, even_modes_, even_);
   multiply_back(to_odd_, odd_modes_, odd_);
   scatter(b);

@@ -18,8 +18,9 @@ class RingFactor {
   /// Nothing if the matrix is not so made (to 1e-6 of its greatest number), not even if it is not positive definite.
   static std::optional<RingFactor> make(int sectors, const std::vector<int>& slab, const std::vector<SlabFactor::Block>& blocks);
 
-  /// x = A^-1 b, in place. Allocates nothing.
-  void solve(Eigen::Ref<Eigen::VectorXf> b) noexcept;
+  /// x = A^-1 b, in place; b is zero before ring `from`. Allocates nothing.
+  void solve(Eigen::Ref<Eigen::VectorXf> b, int from = 0) noexcept;
+  int ring_of(int node) const noexcept { return node / (sectors_ * across_); }
   /// Block of A^-1 that joins two nodes; after keep_inverse().
   Eigen::Matrix3f inverse(int row, int column) const noexcept;
   /// Works out the columns of A^-1 of one sector: the others are the same, turned.
@@ -34,9 +35,9 @@ class RingFactor {
   using Table = Eigen::Array<float, kLanes, Eigen::Dynamic>;
 
   RingFactor(int sectors, int across, int rings);
-  void gather(const Eigen::Ref<Eigen::VectorXf>& b) noexcept;
+  void gather(const Eigen::Ref<Eigen::VectorXf>& b, int from) noexcept;
   void scatter(Eigen::Ref<Eigen::VectorXf> b) const noexcept;
-  void solve_modes(int pack) noexcept;
+  void solve_modes(int pack, int from) noexcept;
   float* mode(int ring, int number, int pack) noexcept;
   template <bool kTransposed>
   void add(const Table& matrix, int at, const Lanes* in, float sign, Lanes* out) const noexcept;

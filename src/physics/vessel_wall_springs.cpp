@@ -89,10 +89,8 @@ void WallSprings::gather_inverse(const WallMatrix& P) noexcept {
     among_.clear();
   }
   first_ = false;
-  for (const int n : nodes_) {
-    int& row = row_[static_cast<std::size_t>(n)];
-    if (row >= 0) continue;
-    row = 3 * static_cast<int>(among_.size());
+  const auto take_in = [&](int n) {
+    const int row = row_[static_cast<std::size_t>(n)] = 3 * static_cast<int>(among_.size());
     among_.push_back(n);
     for (std::size_t i = 0; i < among_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(3 * i);
@@ -100,18 +98,24 @@ void WallSprings::gather_inverse(const WallMatrix& P) noexcept {
       near_.block<3, 3>(k, row) = joined ? P.inverse(among_[i], n) : Eigen::Matrix3f(Eigen::Matrix3f::Zero());
       near_.block<3, 3>(row, k) = joined ? P.inverse(n, among_[i]) : Eigen::Matrix3f(Eigen::Matrix3f::Zero());
     }
-  }
+  };
+  for (int k = n_; k-- > 0;)  // those of the last springs first: couple() reads no further than it must
+    for (const int n : spring(k).given.node)
+      if (row_[static_cast<std::size_t>(n)] < 0) take_in(n);
 }
 
 /// What is not yet known of the j-th spring's column of L^T W L.
 void WallSprings::couple(int j) noexcept {
   const int column = active_[static_cast<std::size_t>(j)];
   const Spring& s = spring(j);
+  int used = 0;  // rows of near_ that are asked for
+  for (int i = j; i < n_; ++i)
+    if (known(active_[static_cast<std::size_t>(i)], column) == 0)
+      for (const int node : spring(i).given.node) used = std::max(used, row_[static_cast<std::size_t>(node)] + 3);
   bool ready = false;
   for (int i = j; i < n_; ++i) {
     const int row = active_[static_cast<std::size_t>(i)];
     if (known(row, column) != 0) continue;
-    const auto used = static_cast<Eigen::Index>(3 * among_.size());
     auto moved = moved_.topRows(used);
     if (!ready) moved.setZero();
     for (std::size_t a = 0; a < 8 && !ready; ++a) {

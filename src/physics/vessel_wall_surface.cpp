@@ -81,9 +81,7 @@ void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, co
 }  // namespace
 
 bool VesselWall::near(const Vec3& low, const Vec3& high) const noexcept {
-  found_.clear();
-  tree_.overlaps({low, high}, found_);
-  return !found_.empty();
+  return tree_.overlaps({low, high});
 }
 
 WallCrossing VesselWall::crossing(const WallState& state, const Vec3& a, const Vec3& b, double from) const noexcept {
@@ -117,17 +115,26 @@ WallCrossing VesselWall::nearest(const WallState& state, const Vec3& q, double r
   int triangle = -1;
   double least = reach;
   TrianglePoint place;
-  double facing = 0.0;  // of ties at shared sides the triangle that q faces most tells inside from outside
+  double facing = -1.0;  // of ties at shared sides the triangle that q faces most tells inside from outside; -1: not asked yet
+  const auto face = [&](int k, const TrianglePoint& c) {
+    const Triangle& t = triangles()[static_cast<std::size_t>(k)];
+    const Vec3 p0 = state.x.col(t[0]), p1 = state.x.col(t[1]), p2 = state.x.col(t[2]);
+    return std::abs((q - c.point).dot((p1 - p0).cross(p2 - p0).normalized()));
+  };
   for (const int k : found_) {
     const Triangle& t = triangles()[static_cast<std::size_t>(k)];
     if (state.soundness[static_cast<std::size_t>(mesh_.faces[static_cast<std::size_t>(k / 2)].element)] == 0.0) continue;
-    const Vec3 p0 = state.x.col(t[0]), p1 = state.x.col(t[1]), p2 = state.x.col(t[2]);
-    const TrianglePoint c = closest_on_triangle(q, p0, p1, p2);
+    const TrianglePoint c = closest_on_triangle(q, state.x.col(t[0]), state.x.col(t[1]), state.x.col(t[2]));
     const double distance = (q - c.point).norm();
-    const double face = std::abs((q - c.point).dot((p1 - p0).cross(p2 - p0).normalized()));
-    if (distance > least + 1e-12 || (triangle >= 0 && distance > least - 1e-12 && face <= facing)) continue;
+    if (distance > least + 1e-12) continue;
+    double own = -1.0;
+    if (triangle >= 0 && distance > least - 1e-12) {
+      if (facing < 0.0) facing = face(triangle, place);
+      own = face(k, c);
+      if (own <= facing) continue;
+    }
     least = std::min(least, distance);
-    facing = face;
+    facing = own;
     triangle = k;
     place = c;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace filum {
 namespace {
@@ -45,14 +46,41 @@ void lean(VesselWall& wall, const WallState& w, const ThreadTouch& touch, const 
   load_wall(wall, w, touch.at, rub, wall.options().dt);
 }
 
-bool in_track(const TrackState& tracks, double whole, double arc) noexcept {
-  for (int i = 0; i < tracks.n; ++i) {
-    const NeedleTrack& t = tracks.tracks[static_cast<std::size_t>(i)];
-    if (t.n == 0) continue;
-    const double a = whole + t.knots[0].strand, b = whole + t.knots[static_cast<std::size_t>(t.n - 1)].strand;
-    if (arc > std::min(a, b) - kTrackReach && arc < std::max(a, b) + kTrackReach) return true;
+/// Stretches of the thread that tracks hold, [m] of its arc.
+class InTracks {
+ public:
+  InTracks(const TrackState& tracks, double whole) noexcept {
+    for (int i = 0; i < tracks.n; ++i) {
+      const NeedleTrack& t = tracks.tracks[static_cast<std::size_t>(i)];
+      if (t.n == 0) continue;
+      const double a = whole + t.knots[0].strand, b = whole + t.knots[static_cast<std::size_t>(t.n - 1)].strand;
+      from_[n_] = std::min(a, b) - kTrackReach;
+      to_[n_++] = std::max(a, b) + kTrackReach;
+    }
   }
-  return false;
+  bool hold(double arc) const noexcept {
+    for (std::size_t i = 0; i < n_; ++i)
+      if (arc > from_[i] && arc < to_[i]) return true;
+    return false;
+  }
+  /// All of n samples along an edge that begins at `arc`.
+  bool hold_all(double arc, double length, int n) const noexcept {
+    for (int k = 0; k < n; ++k)
+      if (!hold(sample(arc, length, k, n))) return false;
+    return true;
+  }
+  static double sample(double arc, double length, int k, int n) noexcept { return arc + static_cast<double>(k) / n * length; }
+
+ private:
+  std::array<double, kMaxTracks> from_, to_;
+  std::size_t n_ = 0;
+};
+
+bool near_one_of(std::span<const ThreadTouch> touches, double arc) noexcept {
+  return std::any_of(touches.begin(), touches.end(), [&](const ThreadTouch& t) { return std::abs(t.arc - arc) < kOneTouch; });
+}
+bool near_one_of(std::span<const double> arcs, double arc) noexcept {
+  return std::any_of(arcs.begin(), arcs.end(), [&](double a) { return std::abs(a - arc) < kOneTouch; });
 }
 
 }  // namespace
@@ -82,6 +110,7 @@ void VesselContact::hold(const VesselWall& wall, const WallState& w, const Touch
 void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
                            const std::vector<RodTether>& on_thread) noexcept {
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
+  const InTracks in_tracks(tracks, whole);
   int kept = 0;
   n_come_out_ = 0;
   for (int k = 0; k < s.n; ++k) {
@@ -90,7 +119,7 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
     ThreadTouch touch = s.touches[static_cast<std::size_t>(k)];
     const RodTether& t = on_thread[index];
     touch.load = std::max(0.0, t.force.dot(touch.normal));
-    if (in_track(tracks, whole, touch.arc) || parted(thread, touch.arc)) continue;
+    if (in_tracks.hold(touch.arc) || parted(thread, touch.arc)) continue;
     const Vec3 x = at_arc(thread, touch.arc);
     const double height = (x - wall.position(w, touch.at)).dot(touch.normal);
     const WallCrossing near = wall.nearest(w, x, 0.1e-3);
@@ -121,13 +150,16 @@ void VesselContact::overtake(const VesselWall& wall, const WallState& w, TouchSt
 /// Samples of the thread on their way from before_ to where it is, or, with `reach` [m], of a wall that has just moved by that much at most.
 void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, double reach) const noexcept {
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
+  const InTracks in_tracks(tracks, whole);
   double arc = thread.arc_start;
-  for (int i = 0; i + 1 < thread.n; arc += thread.rest_length[i++]) {
+  for (int i = 0; i + 1 < thread.n && s.n < kMostTouches; arc += thread.rest_length[i++]) {
+    const int n = thread.alive[i] == 0 ? 1 : static_cast<int>(std::ceil(thread.rest_length[i] / kSpacing));
+    if (in_tracks.hold_all(arc, thread.rest_length[i], n)) continue;
     const Vec3 a = before_.col(i), b = before_.col(i + 1), to_a = thread.x.col(i), to_b = thread.x.col(i + 1), beside = Vec3::Constant(reach);
     if (!wall.near(a.cwiseMin(b).cwiseMin(to_a).cwiseMin(to_b) - beside, a.cwiseMax(b).cwiseMax(to_a).cwiseMax(to_b) + beside)) continue;
-    const int n = thread.alive[i] == 0 ? 1 : static_cast<int>(std::ceil(thread.rest_length[i] / kSpacing));
-    for (int k = 0; k < n; ++k) {
-      const double f = static_cast<double>(k) / n;
+    for (int k = 0; k < n && s.n < kMostTouches; ++k) {
+      const double f = static_cast<double>(k) / n, at = InTracks::sample(arc, thread.rest_length[i], k, n);
+      if (in_tracks.hold(at) || spoken_for(s, at)) continue;  // before the wall is searched: it costs most
       const Vec3 now = (1.0 - f) * to_a + f * to_b;
       Vec3 before = (1.0 - f) * a + f * b;
       if (reach > 0.0) {
@@ -135,20 +167,20 @@ void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState
         if (!near.found) continue;
         before = now + wall.options().dt * wall.velocity(w, near.point);
       }
-      look(wall, w, s, tracks, whole, arc + f * thread.rest_length[i], before, now);
+      look(wall, w, s, at, before, now);
     }
   }
 }
 
-void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, double whole, double arc,
-                         const Vec3& before, const Vec3& now) const noexcept {
-  if (s.n == kMostTouches) return;
+/// Has the thread a touch there already, or one that ends in this step?
+bool VesselContact::spoken_for(const TouchState& s, double arc) const noexcept {
+  return near_one_of(std::span(s.touches.data(), static_cast<std::size_t>(s.n)), arc) ||
+         near_one_of(std::span(come_out_.data(), static_cast<std::size_t>(n_come_out_)), arc);
+}
+
+void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now) const noexcept {
   const WallCrossing c = wall.crossing(w, before, now);
-  if (!c.found || (now - before).dot(c.normal) >= 0.0 || in_track(tracks, whole, arc)) return;
-  for (int k = 0; k < s.n; ++k)
-    if (std::abs(s.touches[static_cast<std::size_t>(k)].arc - arc) < kOneTouch) return;
-  for (int k = 0; k < n_come_out_; ++k)
-    if (std::abs(come_out_[static_cast<std::size_t>(k)] - arc) < kOneTouch) return;
+  if (!c.found || (now - before).dot(c.normal) >= 0.0) return;
   ThreadTouch touch;
   touch.arc = arc;
   touch.at = c.point;

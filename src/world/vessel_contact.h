@@ -39,7 +39,8 @@ class VesselContact {
 
  private:
   void sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, double reach) const noexcept;
-  void look(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, double whole, double arc, const Vec3& before, const Vec3& now) const noexcept;
+  void look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now) const noexcept;
+  bool spoken_for(const TouchState& s, double arc) const noexcept;
 
   struct Push {
     int number, tool;
