@@ -85,6 +85,7 @@ void read_flaps(const YamlNode& node, VesselModel& v) {
   v.name = node.text("name");
   for (const YamlNode& layer : node.items("layers")) v.layers.push_back(read_layer(layer));
   for (const WallLayer& l : v.layers) v.thickness += l.thickness;
+  if (v.layers.empty()) node.refuse("layers", "at least one layer");
   v.mesh = read_card(node, v.thickness, poisson_ratio(v.layers.front().law));
   v.wall.damping = node.quantity("damping", "1/s", Range::between(0.0, kMostDamping));
 }
