@@ -230,17 +230,24 @@ void NeedleTracks::mark_point(const VesselWall& wall, const WallState& w, const 
   if (s.open >= 0 || s.point.kind != PointContact::Kind::none) return;
   const WallCrossing c = wall.nearest(w, s.point_before, kBeside);
   near_ = c.found;
+  outside_ = c.fraction >= 0.0;
   beside_ = c.point;
   if (near_) beside_W_ = wall.position(w, beside_);
 }
 
 void NeedleTracks::carry_point(const VesselWall& wall, const WallState& w, TrackState& s) const noexcept {
   if (near_) s.point_before += wall.position(w, beside_) - beside_W_;
+  s.point_outside = near_ && outside_;
 }
 
 void NeedleTracks::find_contact(const VesselWall& wall, const WallState& w, TrackState& s, const Vec3& before, const Vec3& tip, const Vec3& along) noexcept {
-  const WallCrossing c = wall.crossing(w, before, tip);
-  if (!c.found || (tip - before).dot(c.normal) >= 0.0 || along.dot(c.normal) >= 0.0) return;
+  WallCrossing c = wall.crossing(w, before, tip);
+  bool in = c.found && (tip - before).dot(c.normal) < 0.0;
+  if (!c.found && s.point_outside) {  // a face that twists takes the point along as its middle goes: its triangles may come past it all the same
+    c = wall.nearest(w, tip, kBeside);
+    in = c.found && c.fraction < 0.0;
+  }
+  if (!in || along.dot(c.normal) >= 0.0) return;
   s.point.kind = PointContact::Kind::outside;
   s.point.at = c.point;
   s.point.normal = c.normal;

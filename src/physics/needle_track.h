@@ -110,6 +110,7 @@ class NeedleTracks {
   std::array<Vec3, kMaxTracks> load_;  // [N], on the tissue of each track in this step
   int point_tether_ = -1;
   bool near_ = false;        // the needle's point stands free within reach of the surface,
+  bool outside_ = false;     // on its outer side,
   WallPoint beside_;         // next to this material point,
   Vec3 beside_W_;            // [m], which was here before the wall's step
 };

@@ -52,6 +52,7 @@ struct TrackState {
   std::array<NeedleTrack, kMaxTracks> tracks;
   PointContact point;
   Vec3 point_before = Vec3::Zero();  // [m], of the needle, end of the last step
+  bool point_outside = false;  // it stood free then, within reach of the surface and on the outer side of it
   double dissipated = 0.0;     // [J], by friction, cutting and tearing so far
 };
 

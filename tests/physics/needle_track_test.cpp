@@ -159,6 +159,7 @@ class PointOverCard : public testing::Test {
   Pose X_WN_;
   std::vector<RodTether> on_needle_, on_thread_;
   TrackEvent events_[8];
+  int met_ = 0;
 };
 
 /// A card that is lifted towards a needle standing still, by a third of its thickness and in steps of 4 um: told by the needle's own motion the
@@ -173,6 +174,36 @@ TEST_F(PointOverCard, WallThatComesUponAPointThatStandsStillMeetsIt) {
   }
   EXPECT_EQ(s_.point.kind, PointContact::Kind::outside);
   EXPECT_LE(steps, 4) << "10 um away";
+}
+
+/// The corners of each face go up and down by turns: its middle stays where it was, the side that its two triangles share does not.
+TEST_F(PointOverCard, FaceThatTwistsPastAPointMeetsIt) {
+  stand_at(10e-6);
+  const WallCrossing below = wall_.nearest(w_, X_WN_ * needle_.point(needle_.length()), 1e-4);
+  ASSERT_TRUE(below.found);
+  const WallPoint middle{below.point.element, Vec3(0.0, 0.0, below.point.local.z())};
+  const Vec3 over = wall_.position(w_, middle) + 1e-6 * Vec3::UnitZ();
+  X_WN_.p += over - X_WN_ * needle_.point(needle_.length());
+  const auto& corners = wall_.mesh().elements[static_cast<std::size_t>(middle.element)];
+  const WallState flat = w_;
+  for (const double sign : {1.0, -1.0}) {
+    w_ = flat;
+    wall_.refit(w_);
+    s_ = {};
+    s_.point_before = over;
+    tracks_.mark_point(wall_, w_, s_);
+    for (const int node : corners) {
+      const Vec3 x = flat.x.col(node) - over;
+      w_.x(2, node) += x.x() * x.y() > 0.0 ? sign * 4e-6 : -sign * 4e-6;
+    }
+    wall_.refit(w_);
+    tracks_.carry_point(wall_, w_, s_);
+    const WallCrossing there = wall_.nearest(w_, over, 1e-4);
+    follow();
+    EXPECT_EQ(s_.point.kind, there.fraction < 0.0 ? PointContact::Kind::outside : PointContact::Kind::none) << 1e6 * there.fraction << " um";
+    met_ += s_.point.kind == PointContact::Kind::outside ? 1 : 0;
+  }
+  EXPECT_EQ(met_, 1) << "one of the two ways";
 }
 
 /// A point that is drawn off a face may stand a hair within it by rounding. It was never through, so the next push must meet the face.
