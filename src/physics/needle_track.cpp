@@ -262,7 +262,7 @@ void NeedleTracks::rest_on_surface(VesselWall& wall, const WallState& w, TrackSt
   if (normal <= 0.0) {
     s.point = {};
     const WallCrossing off = wall.nearest(w, tip, kBeside);  // outside by definition: a hair within it would never be seen to come in again
-    if (off.found && off.fraction < kLift) s.point_before = wall.position(w, off.point) + kLift * off.normal;
+    if (off.found && off.fraction < kLift) s.point_before = tip + (kLift - off.fraction) * off.normal;
     return;
   }
   s.point.force = normal;
