@@ -12,7 +12,9 @@ namespace {
 
 constexpr int kRows = 2;         // of elements behind the cut
 constexpr double kAcross = 0.5;  // of a ring's radius, that the wall across may be away
-constexpr double kAside = 0.5;   // of the reach, by which a node may stand beside a cut face that it meets
+constexpr double kFriction = 0.3;  // [-], of wet tissue on tissue [P]
+constexpr double kStick = 0.5;     // of the stiffness: what friction gives by before it slips
+constexpr double kAside = 0.5;    // of the reach, by which a node may stand beside a cut face that it meets
 
 Box around(const std::vector<int>& nodes, const Points& x, double reach) noexcept {
   Box b{x.col(nodes.front()), x.col(nodes.front())};
@@ -89,6 +91,11 @@ void WallMeetings::find(const VesselMesh& mesh, const SurfaceTree& tree, const P
       }
     }
   close_lumen(mesh, tree, x);
+  for (int k = 0; k < n_; ++k) {
+    WallMeeting& m = list_[static_cast<std::size_t>(k)];
+    m.from = apart(m, x);
+    m.limit = kFriction * stiffness_ * std::max(0.0, -m.normal.dot(m.from));
+  }
 }
 
 void WallMeetings::close_lumen(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x) noexcept {
@@ -147,6 +154,7 @@ bool WallMeetings::meet(const VesselMesh& mesh, const SurfaceTree& tree, const P
     const double distance = way.norm(), face = std::abs(way.dot(n));
     if (mesh.faces[static_cast<std::size_t>(k / 2)].surface == WallSurface::edge && face < reach_) {
       const double aside = (way - way.dot(n) * n).norm();
+      if (aside > 1e-9 && aside + std::max(0.0, -way.dot(n)) > kAside * reach_) continue;  // behind the face's plane, but past its rim
       if (aside > least_aside || (cut && aside == least_aside)) continue;
       least_aside = aside;
       met = cut = true;
@@ -162,19 +170,27 @@ bool WallMeetings::meet(const VesselMesh& mesh, const SurfaceTree& tree, const P
   return met;
 }
 
-double WallMeetings::overlap(int k, const Points& x) const noexcept {
-  const WallMeeting& m = (*this)[k];
-  return m.normal.dot(m.weight[0] * x.col(m.face[0]) + m.weight[1] * x.col(m.face[1]) + m.weight[2] * x.col(m.face[2]) - x.col(m.node));
+Vec3 WallMeetings::apart(const WallMeeting& m, const Points& x) const noexcept {
+  return x.col(m.node) - m.weight[0] * x.col(m.face[0]) - m.weight[1] * x.col(m.face[1]) - m.weight[2] * x.col(m.face[2]);
 }
+
+double WallMeetings::overlap(int k, const Points& x) const noexcept { return -(*this)[k].normal.dot(apart((*this)[k], x)); }
 
 double WallMeetings::add_forces(const Points& x, Points& force) const noexcept {
   double energy = 0.0;
   for (int k = 0; k < n_; ++k) {
-    const double o = overlap(k, x);
-    if (o <= 0.0) continue;
     const WallMeeting& m = (*this)[k];
+    const Vec3 d = apart(m, x);
+    const double o = std::max(0.0, -m.normal.dot(d));
+    if (o == 0.0 && m.limit == 0.0) continue;
     energy += 0.5 * stiffness_ * o * o;
-    const Vec3 f = stiffness_ * o * m.normal;
+    Vec3 f = stiffness_ * o * m.normal;
+    if (m.limit > 0.0) {
+      const Vec3 moved = d - m.from, slip = moved - moved.dot(m.normal) * m.normal;
+      const double length = slip.norm(), stick = kStick * stiffness_, give = m.limit / stick;
+      energy += length < give ? 0.5 * stick * length * length : m.limit * (length - 0.5 * give);
+      f -= (length < give ? stick : m.limit / length) * slip;
+    }
     force.col(m.node) += f;
     for (int c = 0; c < 3; ++c) force.col(m.face[static_cast<std::size_t>(c)]) -= m.weight[c] * f;
   }

@@ -4,9 +4,11 @@
 // x_k the corners of a face that node i stands before at the start of the step (a cut face if there is one, else the nearest) and n its normal there (node
 // to face, both ways; Wriggers, Computational Contact Mechanics, 2006, sec. 6). Pairs are found once a step among nodes within `reach` of a face, touching or not, so that what
 // touches during the step is met in it. The potential is part of the wall's own step: both sides move in one equilibrium.
+// Coulomb friction holds what touched at the start of the step where it then was, by a bristle that gives limit / stick before it slips; its normal force is that of
+// the start. Edges drawn over each other would else slide past the faces that they were paired with, and back in the next step, for ever.
 // A lumen that is nearly shut meets itself: where a ring of inner nodes spans less than kNearlyShut of its first area, its nodes are paired with the
 // inner faces across from them (an eighth of a turn away at least).
-// Neglects: friction, outer faces of one part against each other, nodes further than two rows from the cut against other parts. Test: wall_meeting_test.
+// Neglects: outer faces of one part against each other, nodes further than two rows from the cut against other parts. Test: wall_meeting_test.
 
 #include <array>
 #include <vector>
@@ -23,6 +25,8 @@ struct WallMeeting {
   Triangle face;
   Vec3 weight = Vec3::Zero();  // of the face's corners
   Vec3 normal = Vec3::Zero();  // unit, out of the face
+  Vec3 from = Vec3::Zero();    // [m], x_i - sum_k w_k x_k at the start of the step
+  double limit = 0.0;          // [N], of friction
 };
 
 class WallMeetings {
@@ -43,6 +47,7 @@ class WallMeetings {
   double reach() const noexcept { return reach_; }
 
  private:
+  Vec3 apart(const WallMeeting& m, const Points& x) const noexcept;
   void close_lumen(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x) noexcept;
   bool meet_across(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x, int node, WallMeeting& m) noexcept;
   bool meet(const VesselMesh& mesh, const SurfaceTree& tree, const Points& x, int node, WallMeeting& m) noexcept;
