@@ -11,6 +11,8 @@ std::int64_t wrap_add(std::int64_t a, std::int64_t b) {
 std::int64_t wrap_multiply(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) * static_cast<std::uint64_t>(b));
 }
+/// The least number has no opposite: it wraps to itself, where a plain minus is undefined.
+std::int64_t wrap_negate(std::int64_t a) { return static_cast<std::int64_t>(std::uint64_t{0} - static_cast<std::uint64_t>(a)); }
 
 }  // namespace
 
@@ -36,7 +38,7 @@ std::int64_t Laurent::at_minus_one() const {
   std::int64_t sum = 0;
   if (zero()) return 0;
   for (int power = low_; power <= high(); ++power)
-    sum = wrap_add(sum, power % 2 == 0 ? at(power) : -at(power));
+    sum = wrap_add(sum, power % 2 == 0 ? at(power) : wrap_negate(at(power)));
   return sum;
 }
 
@@ -85,7 +87,7 @@ Laurent Laurent::divided(const Laurent& by) const {
     const std::int64_t q = wrap_multiply(rest[k], unit);
     quotient.push_back(q);
     for (std::size_t j = 0; j < width; ++j) {
-      rest[k + j] = wrap_add(rest[k + j], wrap_multiply(-q, by.coefficients_[j]));
+      rest[k + j] = wrap_add(rest[k + j], wrap_multiply(wrap_negate(q), by.coefficients_[j]));
     }
   }
   return Laurent(low_ - by.low_, std::move(quotient));
@@ -102,7 +104,7 @@ std::string Laurent::text(const std::string& variable) const {
     } else {
       out += c < 0 ? " - " : " + ";
     }
-    const std::int64_t size = c < 0 ? -c : c;
+    const auto size = static_cast<std::uint64_t>(c < 0 ? wrap_negate(c) : c);
     if (size != 1 || power == 0) out += std::to_string(size);
     if (size != 1 && power != 0) out += ' ';
     if (power != 0) out += variable;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace filum {
 namespace laurent_test {
 
@@ -29,6 +31,15 @@ TEST(Laurent, MirrorsShiftsAndEvaluates) {
   EXPECT_EQ(a.mirrored().mirrored(), a);
   EXPECT_EQ(a.shifted(-1), Laurent(0, {1, 0, 1, -1}));
   EXPECT_EQ(a.at_minus_one(), -3);
+}
+
+/// As laurent.h promises, also at the one number whose minus does not fit: there UBSan stops a plain minus, and the text had two signs.
+TEST(Laurent, TheLeastCoefficientWrapsToItself) {
+  constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
+  const Laurent a(1, {least}), b(0, {1, 1});
+  EXPECT_EQ(a.at_minus_one(), least);
+  EXPECT_EQ((a * b).divided(b), a);
+  EXPECT_EQ(a.text("t"), "-9223372036854775808 t");
 }
 
 TEST(Laurent, Text) {
