@@ -44,3 +44,7 @@ if(TARGET filum)
   add_test(NAME cli.mesh_scene COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/mesh_scene_test.sh $<TARGET_FILE:filum> ${PROJECT_SOURCE_DIR})
   set_tests_properties(cli.brain_demo cli.mesh_scene PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 endif()
+if(TARGET filum)  # no test: what demonstrations are written with
+  add_executable(filum_rehearsal EXCLUDE_FROM_ALL ${CMAKE_CURRENT_LIST_DIR}/rehearsal_main.cpp)
+  target_link_libraries(filum_rehearsal PRIVATE filum_cli)
+endif()
