@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cinttypes>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -95,7 +97,7 @@ class Rehearsal {
     memory_.from_the_start();
     const std::int64_t now = std::exchange(next_us_, 0);
     move_hands(now - kTick);
-    if (!memory_.all_told()) throw InputError(file + ": not the same up to here as the script before it");
+    if (!memory_.all_told()) throw InputError(file, "tools", "other keys before " + std::to_string(1e-6 * static_cast<double>(now)) + " s", "up to there those of the script before it");
   }
   void move_hands(std::int64_t until_us) noexcept {
     for (; next_us_ <= until_us; next_us_ += kTick) hands_->tick(next_us_);
@@ -111,7 +113,9 @@ class Rehearsal {
   /// Lengths in mm.
   void tell(const char* why) const {
     const Observation& o = world_.observation();
-    nlohmann::ordered_json j = {{"why", why}, {"t", o.time}, {"hash", o.state_hash}, {"nodes", o.n_nodes}, {"needle_held", o.needle.held}};
+    char hash[17];
+    std::snprintf(hash, sizeof hash, "%016" PRIx64, o.state_hash);
+    nlohmann::ordered_json j = {{"why", why}, {"t", o.time}, {"hash", hash}, {"nodes", o.n_nodes}, {"needle_held", o.needle.held}};
     j["thread_held"] = {o.tools[0].grasped_edge >= 0, o.tools[1].grasped_edge >= 0};
     j["passes"] = j["knots"] = nlohmann::ordered_json::array();
     for (int k = 0; k < o.tissue.n_passes; ++k) {

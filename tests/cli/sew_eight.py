@@ -3,7 +3,7 @@
 
   sew_eight.py STATE.json [STITCHES]     (in an empty folder; FILUM_ROOT: the project, REHEARSAL: its build/tests/.../filum_rehearsal)
 
-The hands are those of artery-four-stitches, moved along with the cut edges as they are seen when a stitch begins (keys `at: { edge: N }`), with some lengths
+The hands are those of sew_eight_hands.yaml, moved along with the cut edges as they are seen when a stitch begins (keys `at: { edge: N }`), with some lengths
 to choose. Several tries run at a time (TRIES=2); the first whose bites, then knot, are good is taken. STATE.json holds what was found, and goes on from it as
 long as the sleeping processes of filum_rehearsal live; STATE.json.log tells each try. The script of all stitches found is STATE.json.yaml."""
 import itertools, json, os, random, re, subprocess, sys, threading, time
@@ -27,7 +27,7 @@ def numbers(text): return [float(x) for x in re.findall(r'-?\d+\.?\d*', text)]
 def read_template():
     """Keys of the first and of the second stitch, from when it begins; `p` as numbers, all else as text."""
     tracks, tool = {0: [], 1: [], 2: []}, 0
-    for line in open(ROOT + '/curricula/artery-four-stitches/demonstration.yaml'):
+    for line in open(ROOT + '/tests/cli/sew_eight_hands.yaml'):
         tool = int(m.group(1)) if (m := re.match(r'\s+- tool: (\d)', line)) else tool
         if '{ t:' not in line: continue
         key = {'t': numbers(line)[0]}
