@@ -12,6 +12,7 @@ namespace {
 constexpr int kMostHalvings = 12;
 constexpr double kRollGive = 0.05;    // [rad], by which a wire turns between the pads before it slips
 constexpr double kLongestTurn = 0.3;  // [rad], in one iteration
+constexpr double kStuck = 1e-4;       // [N], imbalance left by moves that turn it about its middle, with which it is not where it belongs
 
 Mat3 cross_matrix(const Vec3& r) noexcept {
   Mat3 m;
@@ -206,8 +207,12 @@ void NeedleBody::fix_loads(const NeedleOptions& o) noexcept {
 }
 
 NeedleSummary NeedleBody::minimise(const NeedleState& s, const NeedleOptions& o) noexcept {
-  NeedleSummary summary;
   begin(s, o);
+  return descend(s, o, Turn::about_middle);
+}
+
+NeedleSummary NeedleBody::descend(const NeedleState& s, const NeedleOptions& o, Turn turn) noexcept {
+  NeedleSummary summary;
   const double lever = shape_.bend_radius;
   for (;; ++summary.iterations) {
     if (summary.iterations < 6) fix_loads(o);
@@ -216,24 +221,34 @@ NeedleSummary NeedleBody::minimise(const NeedleState& s, const NeedleOptions& o)
                                 now_.gradient.tail<3>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / lever);
     summary.sound = std::isfinite(summary.residual);
     if (!summary.sound || summary.residual < o.force_tolerance || summary.iterations == o.max_iterations) break;
-    Vec6 move = now_.stiffness.ldlt().solve(-now_.gradient);
-    const double slope = move.dot(now_.gradient);
-    if (!(slope < 0.0)) break;
-    double fraction = std::min(1.0, kLongestTurn / std::max(move.tail<3>().norm(), 1e-12));
-    const double before = now_.energy;
-    bool gone = false;
-    for (int k = 0; k < kMostHalvings && !gone; ++k, fraction *= 0.5) {
-      trial_.X = {now_.X.p + fraction * move.head<3>(), turned(fraction * move.tail<3>(), now_.X.q)};
-      evaluate(s, o, trial_);
-      gone = trial_.energy <= before + 1e-4 * fraction * slope;
-    }
-    if (!gone) {
-      evaluate(s, o, now_);
-      break;
-    }
-    now_.X = trial_.X;
+    if (!advance(s, o, turn)) break;
   }
   return summary;
+}
+
+/// One step of Newton's method with line search. Where the thread holds the swage, stiffly, and jaws turn the needle by far, turns about its middle leave
+/// the spring's valley at once and are cut to nothing; a swage that goes straight on as the needle turns about it stays there. False if it leads no
+/// further down; now_ is evaluated then.
+bool NeedleBody::advance(const NeedleState& s, const NeedleOptions& o, Turn turn) noexcept {
+  Vec6 move = now_.stiffness.ldlt().solve(-now_.gradient);
+  const double slope = move.dot(now_.gradient);
+  if (!(slope < 0.0)) return false;
+  double fraction = std::min(1.0, kLongestTurn / std::max(move.tail<3>().norm(), 1e-12));
+  const double before = now_.energy;
+  for (int k = 0; k < kMostHalvings; ++k, fraction *= 0.5) {
+    trial_.X = {now_.X.p + fraction * move.head<3>(), turned(fraction * move.tail<3>(), now_.X.q)};
+    if (turn == Turn::about_swage) {
+      const Vec3 swage_N = shape_.point(0.0), r = now_.X.q * swage_N;
+      trial_.X.p += r + fraction * move.tail<3>().cross(r) - trial_.X.q * swage_N;
+    }
+    evaluate(s, o, trial_);
+    if (trial_.energy <= before + 1e-4 * fraction * slope) {
+      now_.X = trial_.X;
+      return true;
+    }
+  }
+  evaluate(s, o, now_);
+  return false;
 }
 
 /// Anchors follow what slid along the pads. Wire that has left the pads lengthwise is taken hold of anew further along.
@@ -264,7 +279,8 @@ void NeedleBody::finish_grips(NeedleState& s) const noexcept {
 }
 
 NeedleSummary NeedleBody::step(NeedleState& s, const NeedleOptions& o) noexcept {
-  const NeedleSummary summary = minimise(s, o);
+  NeedleSummary summary = minimise(s, o);
+  if (summary.sound && summary.residual > kStuck) summary = descend(s, o, Turn::about_swage);
   if (!summary.sound) {
     s.v.setZero();
     s.w.setZero();

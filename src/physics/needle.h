@@ -104,7 +104,10 @@ class NeedleBody {
     double first = -1.0, last = -1.0;
   };
   void begin(const NeedleState& s, const NeedleOptions& o) noexcept;
+  enum class Turn { about_middle, about_swage };  // of a move: which point of the needle goes straight on
   NeedleSummary minimise(const NeedleState& s, const NeedleOptions& o) noexcept;
+  NeedleSummary descend(const NeedleState& s, const NeedleOptions& o, Turn turn) noexcept;
+  bool advance(const NeedleState& s, const NeedleOptions& o, Turn turn) noexcept;
   void evaluate(const NeedleState& s, const NeedleOptions& o, Trial& t) noexcept;
   void add_inertia(const NeedleState& s, const NeedleOptions& o, Trial& t) const noexcept;
   void add_grips(const NeedleState& s, Trial& t) noexcept;

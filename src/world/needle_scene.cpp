@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kSwage = 2e4;         // [N/m], of the joint between needle and thread
 constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
+constexpr double kApart = 10e-6;        // [m], between thread and needle: at kSwage 0.2 N, which no thread that holds pulls with
+constexpr int kMostRepeats = 4;         // of a step that ends with them apart
 
 void say(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
   if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
@@ -26,10 +28,14 @@ NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle
   if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape(), model.description.capacity);
 }
 
-void NeedleScene::start(State& s) const {
+void NeedleScene::start(State& s) {
   s.has_needle = 1;
   s.needle.X_WN = model_.needle->start;
   if (tissue_) s.tissue = tissue_->start(s.needle.X_WN * body_.shape().point(body_.shape().length()));
+  memory_before_.self.reserve(s.memory.self.capacity());
+  memory_before_.obstacle.reserve(s.memory.obstacle.capacity());
+  memory_before_.grasps.reserve(s.memory.grasps.capacity());
+  keep(s);
 }
 
 void NeedleScene::size_observation(Observation& o) const {
@@ -103,29 +109,75 @@ void NeedleScene::before_thread(const State& s, ImplicitRod& rod) noexcept {
   swage.at_end = true;
   if (tissue_) tissue_->hold(s.tissue, s.needle.X_WN, s.thread, body_.tethers, on_thread);
   const bool held = std::any_of(s.needle.grips.begin(), s.needle.grips.end(), [](const NeedleGrip& g) { return g.held != 0; });
-  swage.stiffness = body_.look_ahead(s.needle, options_, 0.0, swage.anchor, held ? s.needle.pull : Vec3::Zero());  // loose, it would fly off
+  hold_swage(s, rod, held ? s.needle.pull : Vec3::Zero());  // loose, it would fly off
+}
+
+/// Where the thread's end is held, and how firmly, by a needle that `load` [N] pulls at.
+void NeedleScene::hold_swage(const State& s, ImplicitRod& rod, const Vec3& load) noexcept {
+  RodTether& swage = rod.tethers.list.front();
+  swage.stiffness = body_.look_ahead(s.needle, options_, 0.0, swage.anchor, load);
+}
+
+/// The needle goes where the thread's end went, as far as what holds it lets it.
+void NeedleScene::follow(State& s) noexcept {
+  const StageScope stage("needle and tissue");
+  RodTether swage;
+  swage.stiffness = kSwage * Mat3::Identity();
+  swage.anchor = s.thread.x.col(s.thread.n - 1);
+  body_.tethers.push_back(swage);
+  summary_ = body_.step(s.needle, options_);
+  s.needle.pull = body_.tethers.back().force;
+  body_.tethers.pop_back();
+}
+
+double NeedleScene::apart(const State& s) const noexcept { return (s.needle.X_WN * body_.shape().point(0.0) - s.thread.x.col(s.thread.n - 1)).norm(); }
+
+void NeedleScene::keep(const State& s) noexcept {
+  thread_before_ = s.thread;
+  memory_before_ = s.memory;
+  needle_before_ = s.needle;
+}
+
+void NeedleScene::take_back(State& s) const noexcept {
+  s.thread = thread_before_;
+  s.memory = memory_before_;
+  s.needle = needle_before_;
+}
+
+/// Thread and needle stand apart, and by another force than the thread's: what was seen ahead was wrong. (A thread drawn to its strength, or whose own step
+/// found no balance, tells nothing of that.)
+bool NeedleScene::misled(const State& s, const ImplicitRod& rod) const noexcept {
+  const Vec3 differ = s.needle.pull + rod.tethers.list.front().force;
+  return apart(s) > kApart && differ.norm() > 0.5 * s.needle.pull.norm();
+}
+
+/// The pull of the last step, under which the swage is seen ahead, is not the thread's where jaws have just snapped shut on the wire: then the step is made
+/// again under the pull that the thread turned out to have.
+RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept {
+  keep(s);
+  before_thread(s, rod);
+  RodStepSummary thread = rod.step(s.thread, s.memory, o);
+  follow(s);
+  for (int k = 0; k < kMostRepeats && thread.residual < kTroubleForce && misled(s, rod); ++k) {
+    take_back(s);
+    hold_swage(s, rod, -rod.tethers.list.front().force);
+    thread = rod.step(s.thread, s.memory, o);
+    follow(s);
+  }
+  return thread;
 }
 
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {
   const StageScope stage("needle and tissue");
   thread_pull_ = rod.tethers.list.front().force.norm();
-  RodTether swage;
-  swage.stiffness = kSwage * Mat3::Identity();
-  swage.anchor = s.thread.x.col(s.thread.n - 1);
-  body_.tethers.push_back(swage);
-  std::array<bool, kNeedleTools> before{};
-  for (std::size_t i = 0; i < body_.tools.size(); ++i) before[i] = s.needle.grips[i].held != 0;
-  const NeedleSummary summary = body_.step(s.needle, options_);
-  if (!summary.sound || summary.residual > kTroubleForce) say(o, "solver-trouble", -1, summary.residual, "N");
-  s.needle.pull = body_.tethers.back().force;
-  body_.tethers.pop_back();
+  if (!summary_.sound || summary_.residual > kTroubleForce) say(o, "solver-trouble", -1, summary_.residual, "N");
   if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments, o);
   if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.thread, body_.tethers, rod.tethers.list, o);
   if (tissue_) tissue_->feel(s.force, s.torque);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {
     s.force[i] += body_.tools[i].force;
     s.torque[i] += body_.tools[i].torque;
-    if (before[i] && s.needle.grips[i].held == 0) say(o, "needle-dropped", static_cast<int>(i), s.instruments[i].grip_force, "N");
+    if (needle_before_.grips[i].held != 0 && s.needle.grips[i].held == 0) say(o, "needle-dropped", static_cast<int>(i), s.instruments[i].grip_force, "N");
   }
 }
 

@@ -2,7 +2,8 @@
 // The needle of a scene: what jaws do to it, and how it moves with the thread that is swaged to it.
 //
 // A step of thread and needle together: the needle is moved as if it had no thread, which tells how firmly its swage is held there;
-// the thread is stepped with its end held just so (rod_tether.h); then the needle follows the thread's end.
+// the thread is stepped with its end held just so (rod_tether.h); then the needle follows the thread's end. Where the needle cannot follow, because
+// what was seen ahead held for another pull only (a wire that turns between the pads gives way without end), the step is taken back and made again.
 
 #include <memory>
 
@@ -20,7 +21,7 @@ class NeedleScene {
  public:
   explicit NeedleScene(const Model& model);
 
-  void start(State& s) const;
+  void start(State& s);
   void size_observation(Observation& o) const;
   /// After a state was restored.
   void match(const State& s) noexcept;
@@ -31,8 +32,9 @@ class NeedleScene {
   void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
   /// After the instruments have moved from `from`: tells the needle where they are, takes it, lets it go.
   void meet_tools(State& s, const std::vector<ObstacleBody>& from, Observation& o) noexcept;
-  void before_thread(const State& s, ImplicitRod& rod) noexcept;
-  /// Adds the needle's pull to the forces on the tools.
+  /// Thread and needle, joined; what they did to each other is in `s` and `rod`.
+  RodStepSummary step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept;
+  /// The tissue's turn. Adds the needle's pull to the forces on the tools.
   void after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept;
   void observe(const State& s, Observation& o) const noexcept;
   static bool held_by(const State& s, int tool) noexcept { return s.needle.grips[static_cast<std::size_t>(tool)].held != 0; }
@@ -40,6 +42,13 @@ class NeedleScene {
  private:
   double stop_angle(const InstrumentParameters& tool) const noexcept;
   static double squeeze(const InstrumentParameters& tool, double stop, double command) noexcept;
+  void before_thread(const State& s, ImplicitRod& rod) noexcept;
+  void hold_swage(const State& s, ImplicitRod& rod, const Vec3& load) noexcept;
+  void follow(State& s) noexcept;
+  double apart(const State& s) const noexcept;
+  bool misled(const State& s, const ImplicitRod& rod) const noexcept;
+  void keep(const State& s) noexcept;
+  void take_back(State& s) const noexcept;
 
   const Model& model_;
   NeedleBody body_;
@@ -47,6 +56,10 @@ class NeedleScene {
   FreshSuture fresh_;
   std::unique_ptr<VesselScene> tissue_;  // in scenes with some
   double thread_pull_ = 0.0;
+  NeedleSummary summary_;                // of the last step
+  RodState thread_before_;               // of the present step, for when it is made again
+  RodMemory memory_before_;
+  NeedleState needle_before_;
 };
 
 }  // namespace filum

@@ -254,8 +254,7 @@ void World::Impl::step_thread() noexcept {
   let_go_of_gaps(state.thread, state.memory.grasps);
   std::array<int, 3> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) before[i] = held_by(static_cast<int>(i));
-  if (needle) needle->before_thread(state, rod);
-  solver = rod.step(state.thread, state.memory, model->step);
+  solver = needle ? needle->step_thread(state, rod, model->step) : rod.step(state.thread, state.memory, model->step);
   if (!solver.sound || solver.crowded || (!solver.converged && solver.residual > kTrouble)) event("solver-trouble", -1, solver.residual, "N");
   for (std::size_t i = 0; i < commands.size(); ++i) {
     state.force[i] = rod.obstacles.bodies[i].force + rod.grasps.tools[i].force;

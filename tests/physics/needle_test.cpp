@@ -147,6 +147,34 @@ TEST(Needle, SeenAheadUnderItsLoadTheSpringGivesThatLoadBack) {
   EXPECT_LT((k * (loaded - rest) - load).norm(), 1e-2 * load.norm());
 }
 
+/// A jaw comes down on the needle in one step, by nearly its own breadth, while the thread holds the swage: from sides and at places where turns about the
+/// needle's middle end with 6 to 700 mN left.
+TEST(Needle, TurnsAboutAHeldSwageAsFarAsJawsPushIt) {
+  const NeedleShape shape;
+  for (const int k : {4, 6, 14, 26, 31, 35}) {
+    NeedleBody body(shape, 1);
+    NeedleState s;
+    NeedleOptions o;
+    const double angle = 0.35 * k;
+    const Vec3 side(std::cos(angle) * std::cos(0.2 * k), std::sin(angle) * std::cos(0.2 * k), std::sin(0.2 * k));
+    NeedleTool& jaw = body.tools[0];
+    jaw.X_end.p = s.X_WN * shape.point((0.5 + 0.5 * k / 36.0) * shape.length()) + 0.1e-3 * side;
+    jaw.X_end.q = Quat::FromTwoVectors(Vec3::UnitX(), side.unitOrthogonal());
+    for (int b = 0; b < 3; ++b) {
+      jaw.bars.a_T[b] = Vec3(-2e-3, 0, 0);
+      jaw.bars.b_T[b] = Vec3(2e-3, 0, 0);
+      jaw.bars.r_a[b] = jaw.bars.r_b[b] = 0.7e-3;
+    }
+    RodTether thread;
+    thread.stiffness = 2e4 * Mat3::Identity();
+    thread.anchor = s.X_WN * shape.point(0.0);
+    body.tethers.assign(1, thread);
+    const NeedleSummary summary = body.step(s, o);
+    EXPECT_LT(summary.residual, 1e-4) << "side " << k;
+    EXPECT_LT((s.X_WN * shape.point(0.0) - thread.anchor).norm(), 20e-6) << "side " << k;
+  }
+}
+
 TEST(Needle, StepsAllocateNothingAndRepeatExactly) {
   auto run = [](int steps) {
     Held h(0.5);
