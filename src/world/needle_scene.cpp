@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSwage = 2e4;         // [N/m], of the joint between needle and thread
 constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
-constexpr double kApart = 10e-6;        // [m], between thread and needle: at kSwage 0.2 N, which no thread that holds pulls with
+constexpr double kApart = 20e-6;        // [m], between thread and needle: at kSwage 0.4 N, as much as a thread of 10-0 bears
 constexpr int kMostRepeats = 4;         // of a step that ends with them apart
 
 void say(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
