@@ -37,6 +37,13 @@ VesselMesh stumps(double gap) {
   return make_stumps(stump_shape(), c);
 }
 
+/// The clamp goes a step on its way to a gap.
+void slide(VesselWall& wall, const DoubleClamp& first, DoubleClamp& now, double gap, double length) {
+  now = approach(now, gap, 0.0, 2e-3, 0.5e-3, 1.0);
+  const auto motion = clamp_motion(first, now, length);
+  for (int part = 0; part < 2; ++part) wall.place_clamp(part, motion[static_cast<std::size_t>(part)]);
+}
+
 TEST(WallMeeting, FindsTheOppositeEdgeWithinReachOnly) {
   const VesselMesh near = stumps(20e-6), far = stumps(80e-6);
   WallMeetings m(near, 50e-6, 30.0);
@@ -90,9 +97,7 @@ TEST(WallMeeting, EdgesPressedTogetherStayApart) {
     VesselWall wall(make_stumps(shape, first), soft_wall(), options);
     WallState state = wall.first_state();
     for (int k = 0; k < 200; ++k) {
-      now = approach(now, -40e-6, 0.0, 2e-3, 0.5e-3, 1.0);
-      const auto motion = clamp_motion(first, now, shape.length);
-      for (int part = 0; part < 2; ++part) wall.place_clamp(part, motion[static_cast<std::size_t>(part)]);
+      slide(wall, first, now, -40e-6, shape.length);
       wall.refit(state);
       if (met) wall.meet(state);
       ASSERT_TRUE(wall.step(state).sound) << k;
@@ -135,9 +140,7 @@ TEST(WallMeeting, EdgesDrawnOverEachOtherComeToRest) {
   }
   double last = 0.0;  // [m], moved in a step at most, on average over the last half second
   for (int k = 0; k < 2000; ++k) {
-    now = approach(now, 0.2e-3, 0.0, 2e-3, 0.5e-3, 1.0);
-    const auto motion = clamp_motion(first, now, shape.length);
-    for (int part = 0; part < 2; ++part) wall.place_clamp(part, motion[static_cast<std::size_t>(part)]);
+    slide(wall, first, now, 0.2e-3, shape.length);
     wall.clear_loads();
     for (const std::size_t side : {0, 1}) {
       const double share = std::min(1.0, k / 1000.0);
