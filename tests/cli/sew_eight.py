@@ -18,7 +18,7 @@ WIDE, INNER = 0.47, 0.1                                   # [mm], most of an out
 # Lengths in mm, times in s. enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
 # edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
 # the cuts, and open again; let_go: where the short end is let go
-DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.8, last=0.18, open=1.2, let_go=(0, -.25, -.4))
+DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4))
 
 
 def numbers(text): return [float(x) for x in re.findall(r'-?\d+\.?\d*', text)]
@@ -145,8 +145,9 @@ def follow(name, check, given_up, pipe=None, order=None):
         time.sleep(0.5)
 
 
-def bites_wrong(k, s, drawn):
-    passes = s['passes'][2 * k:]
+def bites_wrong(k, s, tau):
+    passes, drawn = s['passes'][2 * k:], tau > 30
+    if tau < 18: return None if len(passes) == 1 and passes[0]['bites'][1] >= INNER else 'first wall %s' % [p['bites'] for p in passes]
     if len(passes) != 2 or not passes[1]['out']: return 'passes %s' % [(p['state'], p['side'], p['bites']) for p in passes]
     if min(passes[0]['bites'][1], passes[1]['bites'][0]) < INNER: return 'inner bites %s' % [p['bites'] for p in passes]
     if not drawn: return None if s['needle_held'][0] else 'forceps missed the needle'
@@ -192,8 +193,8 @@ def bite_choices(random_):
 
 
 def knot_choices(random_):
-    yield from (dict(), dict(let_go=(0, -.3, -.45)), dict(slide=.78), dict(let_go=(0, -.15, -.3)), dict(slide=.74, last=.22), dict(let_go=(0, -.4, -.6)))
-    while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.66, .9), 2))
+    yield from (dict(let_go=(0, -.3, -.45)), dict(), dict(slide=.6, let_go=(0, -.3, -.45)), dict(slide=.6), dict(let_go=(0, -.15, -.3)), dict(let_go=(0, -.4, -.6)))
+    while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .7), 2))
 
 
 def sew(state, file, random_, log):
@@ -202,7 +203,7 @@ def sew(state, file, random_, log):
     def try_bites(n, choice, given_up):
         me = name('b', n)
         script = write(me + '.yaml', state['stitches'] + [choice])
-        _, wrong = follow(me, lambda s: bites_wrong(k, s, s['t'] - start > 30), given_up, state['pipe'], 'go %s %s %g %g %g' % (me, script, start + 38, start + 24.2, start + 37.8))
+        _, wrong = follow(me, lambda s: bites_wrong(k, s, s['t'] - start), given_up, state['pipe'], 'go %s %s %g %g %g %g' % (me, script, start + 38, start + 14.2, start + 24.2, start + 37.8))
         return (choice, '%s_%.1f' % (me, start + 37.8)), wrong
     for _ in range(6):
         state['count'] += 1
