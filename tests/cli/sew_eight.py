@@ -13,12 +13,12 @@ REHEARSAL = os.environ.get('REHEARSAL', ROOT + '/build/tests/filum_rehearsal')
 TRIES = int(os.environ.get('TRIES', '2'))
 SECONDS = 91.0                                            # of the script, a stitch
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
-WIDE, INNER = 0.5, 0.1                                   # [mm], most of an outer bite, least of an inner one
+WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
 
 # Lengths in mm, times in s. enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
 # edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
 # the cuts, and open again; let_go: where the short end is let go
-DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4))
+DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=0.8, let_go=(0, -.25, -.4))
 
 
 def numbers(text): return [float(x) for x in re.findall(r'-?\d+\.?\d*', text)]
@@ -185,7 +185,7 @@ def race(tries, run, most, log):
 
 
 def bite_choices(random_):
-    for enter, leave in (((-.05, -.22), (.12, .04)), ((-.03, -.2), (.22, 0)), ((-.03, -.24), (.12, .04)), ((0, -.24), (.2, .04))):
+    for enter, leave in (((-.05, -.22), (.12, .04)), ((-.03, -.2), (.22, 0)), ((-.03, -.24), (.22, .03)), ((0, -.24), (.2, .04))):
         yield dict(enter=enter, leave=leave, press=(.18, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
@@ -193,8 +193,8 @@ def bite_choices(random_):
 
 
 def knot_choices(random_):
-    yield from (dict(let_go=(0, -.3, -.45)), dict(), dict(slide=.6, let_go=(0, -.3, -.45)), dict(slide=.6), dict(let_go=(0, -.15, -.3)), dict(let_go=(0, -.4, -.6)))
-    while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .7), 2))
+    yield from (dict(let_go=(0, -.3, -.45)), dict(slide=.8, let_go=(0, -.3, -.45)), dict(), dict(slide=.6, let_go=(0, -.3, -.45)), dict(slide=.6), dict(let_go=(0, -.15, -.3)), dict(let_go=(0, -.4, -.6)))
+    while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .9), 2))
 
 
 def sleeps(pipe):
