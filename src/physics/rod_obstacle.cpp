@@ -99,7 +99,7 @@ void RodObstacles::find_touch(const RodState& s, const Points& x, double radius,
     const Vec3 n = (b_W_[k] - a_W_[k]).normalized();
     const double above = n.dot(x.col(j) - a_W_[k]), last = n.dot(x.col(j + 1) - a_W_[k]);
     if (above < margin) collect(j, k, 0.0, above - radius);
-    if (j + 2 == s.n && last < margin) collect(j, k, 1.0, last - radius);
+    if (o.bears_end && j + 2 == s.n && last < margin) collect(j, k, 1.0, last - radius);
     return;
   }
   if (s.alive[j] == 0) return;  // of a parted edge only the first node counts: it ends a piece that may lie on the sheet

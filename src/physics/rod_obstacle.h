@@ -26,6 +26,7 @@ struct Obstacle {
   double r_a = 0, r_b = 0;                        // [m]
   double friction = 0.2;                          // [-]
   double ignore_from = 1.0, ignore_to = 0.0;      // [m], stretch of the thread it does not touch (held in the jaws), by arc
+  bool bears_end = true;                          // a plane: the last node lies on it; false where that is inside a needle's swage
 };
 
 struct ObstacleTouch {

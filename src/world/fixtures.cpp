@@ -28,6 +28,7 @@ void add_fixtures(const Model& model, RodObstacles& obstacles) {
   sheet.a_B = Vec3(0, 0, model.description.floor_height);
   sheet.b_B = sheet.a_B + Vec3::UnitZ();
   sheet.friction = model.post_friction;
+  sheet.bears_end = model.needle == nullptr;  // else the needle around it meets the sheet
   obstacles.obstacles.push_back(sheet);
 }
 

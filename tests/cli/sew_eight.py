@@ -18,7 +18,7 @@ WIDE, INNER = 0.5, 0.1                                    # [mm], most of an out
 # Lengths in mm, times in s. enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
 # edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
 # the cuts, and open again; let_go: where the short end is let go
-DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=0.8, let_go=(0, -.25, -.4))
+DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4))
 
 
 def numbers(text): return [float(x) for x in re.findall(r'-?\d+\.?\d*', text)]
@@ -185,15 +185,18 @@ def race(tries, run, most, log):
 
 
 def bite_choices(random_):
-    for enter, leave in (((-.05, -.22), (.12, .04)), ((-.03, -.2), (.22, 0)), ((-.03, -.24), (.22, .03)), ((0, -.24), (.2, .04))):
-        yield dict(enter=enter, leave=leave, press=(.18, 0), take=3.7)
+    for press in (.18, .22):
+        for enter, leave in (((0, -.24), (.2, .04)), ((-.03, -.24), (.22, .03)), ((-.05, -.22), (.12, .04)), ((-.03, -.2), (.22, 0))):
+            yield dict(enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
         yield dict(enter=(near(-.1, .05), near(-.32, -.14)), leave=(near(.06, .28), near(-.06, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
 
 
-def knot_choices(random_):
-    yield from (dict(let_go=(0, -.3, -.45)), dict(slide=.8, let_go=(0, -.3, -.45)), dict(), dict(slide=.6, let_go=(0, -.3, -.45)), dict(slide=.6), dict(let_go=(0, -.15, -.3)), dict(let_go=(0, -.4, -.6)))
+def knot_choices(random_, k):
+    """Late stitches lie between others that hold the edges apart: there the clamp slides farther."""
+    slides = (.8, .7, .9) if k > 4 else (.5, .6, .7)
+    yield from (dict(slide=slide, let_go=let_go) for let_go in ((0, -.3, -.45), (0, -.25, -.4), (0, -.4, -.6)) for slide in slides)
     while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .9), 2))
 
 
@@ -218,6 +221,7 @@ def sew(state, file, random_, log):
         script = write(me + '.yaml', state['stitches'] + [choice])
         _, wrong = follow(me, lambda s: bites_wrong(k, s, s['t'] - start), given_up, state['pipe'], 'go %s %s %g %g %g %g' % (me, script, start + 38, start + 14.2, start + 24.2, start + 37.8))
         return (choice, '%s_%.1f' % (me, start + 37.8)), wrong
+    ways = bite_choices(random_)
     for _ in range(6):
         state['count'] = state.get('count', 0) + 1
         if k == 0:
@@ -225,7 +229,7 @@ def sew(state, file, random_, log):
             with open(file + '_first.out', 'w') as out: subprocess.run([REHEARSAL, ROOT, 'anastomosis-8', script, file + '_first', '38', '37.8'], stdout=out, check=True)
             bites = ({}, file + '_first_37.8')
         else:
-            bites = race(bite_choices(random_), try_bites, 8, lambda n, c, w: log(k, 'bites', n, c, w))
+            bites = race(ways, try_bites, 8, lambda n, c, w: log(k, 'bites', n, c, w))
         if not bites: continue
         def try_knot(n, choice, given_up):
             me, chosen = name('k', n), dict(bites[0], **choice)
@@ -233,7 +237,7 @@ def sew(state, file, random_, log):
             stops = ' '.join('%g' % (start + t) for t in (54.0, 60.0, 71.9, 76.4, 90.9 if k < 7 else 89.5))
             _, wrong = follow(me, lambda s: knot_wrong(k, s, s['t'] - start), given_up, bites[1], 'go %s %s %g %s' % (me, script, start + 90.95, stops))
             return (chosen, '%s_%.1f' % (me, start + 90.9)), wrong
-        knot = race(knot_choices(random_), try_knot, 6, lambda n, c, w: log(k, 'knot', n, c, w))
+        knot = race(knot_choices(random_, k), try_knot, 6, lambda n, c, w: log(k, 'knot', n, c, w))
         if knot:
             state['stitches'].append(knot[0])
             state['pipe'] = knot[1]

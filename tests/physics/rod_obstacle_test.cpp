@@ -58,6 +58,19 @@ TEST(RodObstacle, ThreadDroppedOnTheSheetRestsWithItsWeight) {
   EXPECT_NEAR(sheet.s.x.row(2).maxCoeff(), sheet.m.radius, 1e-9);
 }
 
+TEST(RodObstacle, AnEndInsideANeedleIsNotBorneByTheSheet) {
+  for (const bool bears_end : {true, false}) {
+    Sheet sheet(0.0);
+    sheet.rod.obstacles.obstacles[0].bears_end = bears_end;
+    sheet.run(200);
+    sheet.rod.boundary.load(2, 20) = -1e-3;
+    sheet.run(500);
+    const double deep = sheet.m.radius - sheet.s.x(2, 20);
+    if (bears_end) EXPECT_LT(deep, 0.3 * sheet.m.radius);  // 1 mN squeezes the thread by less
+    else EXPECT_GT(deep, sheet.m.radius);
+  }
+}
+
 TEST(RodObstacle, StaysUnderALoadBelowTheLimitOfFriction) {
   Sheet sheet(0.0);
   sheet.run(200);

@@ -64,6 +64,40 @@ TEST(NeedleScene, OpenedJawsLetItFall) {
   EXPECT_NEAR(o.needle.X_WN.p.z(), scene()->description.floor_height + scene()->needle->shape.wire_radius, 0.3e-3);
 }
 
+double apart(const World& w) { return (w.observation().positions.col(w.observation().n_nodes - 1) - w.observation().needle.swage_W).norm(); }
+
+TEST(NeedleScene, PressedSwageFirstIntoTheSheetItKeepsItsThread) {
+  World w(scene());
+  for (int k = 0; k < 650; ++k) w.step(hand(k));
+  Inputs in = hand(650);
+  const Pose lifted = in.tools[0].X_WD;
+  const Vec3 across = lifted.q * Vec3::UnitX();
+  const bool swage_sinks = (w.observation().needle.swage_W - lifted.p).cross(Vec3(-Vec3::UnitZ())).dot(across) > 0;
+  double most = 0;
+  bool pressed = false;
+  for (int k = 0; k < 800; ++k) {  // tilted until the swage points down, then put down by 4 mm
+    const double tilt = std::min(k / 300.0, 1.0) * (swage_sinks ? 1.3 : -1.3), down = std::clamp((k - 300) / 300.0, 0.0, 1.0) * 4e-3;
+    in.tools[0].X_WD = {lifted.p - down * Vec3::UnitZ(), Quat(Eigen::AngleAxisd(tilt, across)) * lifted.q};
+    w.step(in);
+    most = std::max(most, apart(w));
+    pressed = pressed || w.observation().needle.swage_W.z() < scene()->description.floor_height + scene()->needle->shape.wire_radius;
+  }
+  EXPECT_TRUE(pressed);
+  EXPECT_LT(most, 1e-6);  // [m]
+}
+
+/// The swage is foreseen under the last step's pull. Where the thread breaks there that pull is gone, and the step is made again (else: 51 um).
+TEST(NeedleScene, AThreadThatBreaksAtTheSwageLeavesItsEndThere) {
+  World w(scene());
+  for (int k = 0; k < 650; ++k) w.step(hand(k));
+  State broken = w.state();
+  broken.needle.pull = Vec3(0.1, 0.0, 0.0);  // [N]
+  broken.thread.alive[broken.thread.n - 2] = 0;
+  w.restore(broken);
+  w.step(hand(650));
+  EXPECT_LT(apart(w), 1e-6);  // [m]
+}
+
 TEST(NeedleScene, SnapshotGoesOnBitEqualAndStepsAllocateNothing) {
   World whole(scene());
   for (int k = 0; k < 400; ++k) whole.step(hand(k));
