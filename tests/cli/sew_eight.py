@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Writes a demonstration of anastomosis-8, stitch by stitch, each tried from the state that the one before ended in.
 
-  sew_eight.py STATE.json [STITCHES]     (in an empty folder; FILUM_ROOT: the project, REHEARSAL: its build/tests/.../filum_rehearsal)
+  sew_eight.py STATE.json [STITCHES]     (in an empty folder; FILUM_ROOT: the project, REHEARSAL: its build/tests/.../filum_rehearsal,
+                                          TASK: another task in which each stitch has a fresh suture and the clamp is turned on once)
 
 The hands are those of sew_eight_hands.yaml, moved along with the cut edges as they are seen when a stitch begins (keys `at: { edge: N }`), with some lengths
 to choose. Several tries run at a time (TRIES=2); the first whose bites, then knot, are good is taken. STATE.json holds what was found; from it the search goes on, and
@@ -11,6 +12,7 @@ import itertools, json, os, random, re, subprocess, sys, threading, time
 ROOT = os.environ.get('FILUM_ROOT', '.')
 REHEARSAL = os.environ.get('REHEARSAL', ROOT + '/build/tests/filum_rehearsal')
 TRIES = int(os.environ.get('TRIES', '2'))
+TASK = os.environ.get('TASK', 'anastomosis-8')
 SECONDS = 91.0                                            # of the script, a stitch
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
 WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
@@ -108,11 +110,19 @@ def stitch(k, parameters, last_stitch):
     return tracks
 
 
-def write(path, stitches, whole=8):
+def told_of_task(field, path):
+    return re.search(r'^ *%s: (.*)' % field, open('%s/curricula/%s/%s' % (ROOT, TASK, path)).read(), re.M).group(1)
+
+
+def all_stitches(): return int(told_of_task('sutures', 'scene.yaml').strip('"'))
+
+
+def write(path, stitches):
     """One more stitch than are known, so that the hands are not done while the last one is looked at."""
+    whole = all_stitches()
     parts = [stitch(k, p, k + 1 == whole) for k, p in enumerate(stitches + [{}] * (len(stitches) < whole))]
     with open(path, 'w') as f:
-        f.write('format: filum-demonstration/1\ntitle: Eight stitches in a digital artery\ntools:\n')
+        f.write('format: filum-demonstration/1\ntitle: %s\ntools:\n' % told_of_task('title', 'scene.yaml'))
         for tool in (0, 1, 2):
             f.write('  - tool: %d\n    keys:\n' % tool)
             last = -1.0
@@ -209,7 +219,7 @@ def sleeps(pipe):
 def do_again(state, file):
     end = len(state['stitches']) * SECONDS - 0.1
     script = write(file + '_again.yaml', state['stitches'])
-    with open(file + '_again.out', 'w') as out: subprocess.run([REHEARSAL, ROOT, 'anastomosis-8', script, file + '_again', '%g' % (end + .05), '%g' % end], stdout=out, check=True)
+    with open(file + '_again.out', 'w') as out: subprocess.run([REHEARSAL, ROOT, TASK, script, file + '_again', '%g' % (end + .05), '%g' % end], stdout=out, check=True)
     state['pipe'] = file + '_again_%.1f' % end
 
 
@@ -226,7 +236,7 @@ def sew(state, file, random_, log):
         state['count'] = state.get('count', 0) + 1
         if k == 0:
             script = write(file + '_first.yaml', [{}])
-            with open(file + '_first.out', 'w') as out: subprocess.run([REHEARSAL, ROOT, 'anastomosis-8', script, file + '_first', '38', '37.8'], stdout=out, check=True)
+            with open(file + '_first.out', 'w') as out: subprocess.run([REHEARSAL, ROOT, TASK, script, file + '_first', '38', '37.8'], stdout=out, check=True)
             bites = ({}, file + '_first_37.8')
         else:
             bites = race(ways, try_bites, 8, lambda n, c, w: log(k, 'bites', n, c, w))
@@ -234,7 +244,7 @@ def sew(state, file, random_, log):
         def try_knot(n, choice, given_up):
             me, chosen = name('k', n), dict(bites[0], **choice)
             script = write(me + '.yaml', state['stitches'] + [chosen])
-            stops = ' '.join('%g' % (start + t) for t in (54.0, 60.0, 71.9, 76.4, 90.9 if k < 7 else 89.5))
+            stops = ' '.join('%g' % (start + t) for t in (54.0, 60.0, 71.9, 76.4, 90.9 if k + 1 < all_stitches() else 89.5))
             _, wrong = follow(me, lambda s: knot_wrong(k, s, s['t'] - start), given_up, bites[1], 'go %s %s %g %s' % (me, script, start + 90.95, stops))
             return (chosen, '%s_%.1f' % (me, start + 90.9)), wrong
         knot = race(knot_choices(random_, k), try_knot, 6, lambda n, c, w: log(k, 'knot', n, c, w))
@@ -246,7 +256,7 @@ def sew(state, file, random_, log):
 
 
 def main():
-    file, wanted = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 8
+    file, wanted = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else all_stitches()
     state = json.load(open(file)) if os.path.exists(file) else dict(stitches=[], pipe=None, count=0)
     journal = open(file + '.log', 'a')
     log = lambda *words: print(time.strftime('%H:%M:%S'), *words, file=journal, flush=True)
