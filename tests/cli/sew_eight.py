@@ -15,6 +15,8 @@ TRIES = int(os.environ.get('TRIES', '2'))
 TASK = os.environ.get('TASK', 'anastomosis-8')
 SECONDS = 91.0                                            # of the script, a stitch
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
+TOGETHER = 0.5                                            # [s], of the clamp's sliding at the end of fewer stitches, which leave the edges between them apart
+FIRM = 0.45                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
 WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
 
 # Lengths in mm, times in s. enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
@@ -103,6 +105,7 @@ def scissors(keys, p, last_stitch):
 
 def stitch(k, parameters, last_stitch):
     p, template = dict(DEFAULT, **parameters), read_template()[min(k, 1)]
+    if last_stitch and all_stitches() < 8: p['last'] = TOGETHER
     tracks = {0: forceps(template[0], p, k > 0), 1: holder(template[1], p, k > 0), 2: scissors(template[2], p, last_stitch)}
     for keys in tracks.values():
         keys[:] = sorted((dict(key, t=key['t'] + k * SECONDS) for key in keys if key['t'] < SECONDS), key=lambda key: key['t'])
@@ -173,7 +176,7 @@ def knot_wrong(k, s, tau):
     if len(square) < k + (tau > 76): return 'knots %s' % [(n['class'], n['loop']) for n in s['knots']]
     if tau < 55 or 70 < tau < 76: return None if s['thread_held'][1] else 'short end not held'
     if 55 < tau < 70: return None if any(n['class'] == 'overhand' for n in s['knots']) else 'first throw open'
-    return 'loose or long %s' % [(n['loop'], n['tail']) for n in square] if tau > 80 and any(n['loop'] > 5.6 or not 0.32 < n['tail'] < 1.6 for n in square) else None
+    return 'loose or long %s' % [(n['loop'], n['tail']) for n in square] if tau > 80 and (square[-1]['tail'] < FIRM or any(n['loop'] > 5.6 or not 0.28 < n['tail'] < 1.6 for n in square)) else None
 
 
 def race(tries, run, most, log):
@@ -195,12 +198,12 @@ def race(tries, run, most, log):
 
 
 def bite_choices(random_):
-    for press in (.18, .22):
-        for enter, leave in (((0, -.24), (.2, .04)), ((-.03, -.24), (.22, .03)), ((-.05, -.22), (.12, .04)), ((-.03, -.2), (.22, 0))):
-            yield dict(enter=enter, leave=leave, press=(press, 0), take=3.7)
+    for enter, leave, press in (((0, -.24), (.2, .04), .18), ((-.03, -.24), (.22, .03), .18), ((.045, -.27), (.12, .06), .25), ((.03, -.31), (.2, -.05), .2),
+                                ((-.05, -.22), (.12, .04), .18), ((-.03, -.2), (.22, 0), .18), ((-.03, -.24), (.22, .03), .22), ((.045, -.16), (.14, .02), .18)):
+        yield dict(enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
-        yield dict(enter=(near(-.1, .05), near(-.32, -.14)), leave=(near(.06, .28), near(-.06, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
+        yield dict(enter=(near(-.05, .09), near(-.36, -.2)), leave=(near(.06, .28), near(-.06, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
 
 
 def knot_choices(random_, k):

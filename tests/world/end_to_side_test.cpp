@@ -71,7 +71,18 @@ TEST(EndToSide, AnOpenJoinLeaksAsAnOrificeBySectorsOfTheEdge) {
   for (const LeakSector& s : still.sectors) EXPECT_NEAR(s.length, around / 8.0, 0.15e-3) << "to a side of an element";
   EXPECT_EQ(r.overlap, 0.0);
   EXPECT_EQ(r.thread_inside, 0.0);
-  EXPECT_LT(r.narrowing, 0.4);
+}
+
+/// At 100 mmHg an unsewn opening flaps and never rests (narrowed by 0.2 to 0.9, as the moment may be); at 10 mmHg it does.
+TEST(EndToSide, AnOpenJoinAtLowPressureIsHardlyNarrowed) {
+  const World w(scene());
+  JoinTestOptions o;
+  o.pressure = 1333.2;
+  const JoinTestReport soon = join_test(*scene(), w.state(), o);
+  EXPECT_TRUE(soon.sound);
+  EXPECT_LT(soon.narrowing, 0.05);
+  o.hold *= 3.0;
+  EXPECT_NEAR(join_test(*scene(), w.state(), o).narrowing, soon.narrowing, 1e-3);
 }
 
 TEST(EndToSide, KeyCBringsTheStumpDownAndKeyNTurnsAllAboutTheVessel) {
