@@ -117,10 +117,13 @@ it("warns by words, signs and outline", async () => {
   await start("demo");
   const danger = page.locator(".warnings .danger");
   await danger.waitFor();
-  expect(await danger.textContent()).toContain("Stop");
-  expect(await danger.locator("svg").count()).toBe(1);
-  const styles = await page.locator(".warnings").evaluate((list) => [...list.children].map((one) => getComputedStyle(one).borderTopStyle + getComputedStyle(one).backgroundImage));
-  expect(new Set(styles).size).toBe(styles.length);
+  const seen = await danger.evaluate((one) => {  // at once: warnings come and go with the frames
+    const styles = [...one.parentElement!.children].map((each) => getComputedStyle(each).borderTopStyle + getComputedStyle(each).backgroundImage);
+    return { text: one.textContent, signs: one.querySelectorAll("svg").length, styles };
+  });
+  expect(seen.text).toContain("Stop");
+  expect(seen.signs).toBe(1);
+  expect(new Set(seen.styles).size).toBe(seen.styles.length);
 });
 
 it("is used from start to replay with the keyboard alone, and shows where the focus is", async () => {
