@@ -68,7 +68,7 @@ void WildHands::aim(Hand& hand, const Observation& o) {
   const double speed = rng_.uniform(0.1, 1.0) * kWildSpeed;
   hand.steps = hand.left = std::max(1, static_cast<int>((hand.to.p - hand.from.p).norm() / (speed * dt_)));
   hand.grip = rng_.uniform() < 0.5 ? 0.2 : -0.1;
-  hand.buttons = rng_.uniform() < 0.2 ? static_cast<std::uint32_t>(rng_.below(64)) : 0;
+  hand.buttons = rng_.uniform() < 0.2 ? static_cast<std::uint32_t>(rng_.below(64)) : 0;  // any of the six of world/inputs.h
   hand.silent = rng_.uniform() < 0.05 ? 60 : 0;
 }
 

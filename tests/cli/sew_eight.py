@@ -15,7 +15,6 @@ TRIES = int(os.environ.get('TRIES', '2'))
 TASK = os.environ.get('TASK', 'anastomosis-8')
 SECONDS = 91.0                                            # of the script, a stitch
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
-TOGETHER = 0.5                                            # [s], of the clamp's sliding at the end of fewer stitches, which leave the edges between them apart
 FIRM = 0.45                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
 WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
 
@@ -23,6 +22,12 @@ WIDE, INNER = 0.5, 0.1                                    # [mm], most of an out
 # edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
 # the cuts, and open again; let_go: where the short end is let go
 DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4))
+
+
+def of_scene(field): return re.search(r'^%s: (.*)' % field, open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read(), re.M).group(1)
+
+
+STITCHES = int(of_scene('sutures').strip('"'))
 
 
 def numbers(text): return [float(x) for x in re.findall(r'-?\d+\.?\d*', text)]
@@ -105,7 +110,6 @@ def scissors(keys, p, last_stitch):
 
 def stitch(k, parameters, last_stitch):
     p, template = dict(DEFAULT, **parameters), read_template()[min(k, 1)]
-    if last_stitch and all_stitches() < 8: p['last'] = TOGETHER
     tracks = {0: forceps(template[0], p, k > 0), 1: holder(template[1], p, k > 0), 2: scissors(template[2], p, last_stitch)}
     for keys in tracks.values():
         keys[:] = sorted((dict(key, t=key['t'] + k * SECONDS) for key in keys if key['t'] < SECONDS), key=lambda key: key['t'])
@@ -113,19 +117,11 @@ def stitch(k, parameters, last_stitch):
     return tracks
 
 
-def told_of_task(field, path):
-    return re.search(r'^ *%s: (.*)' % field, open('%s/curricula/%s/%s' % (ROOT, TASK, path)).read(), re.M).group(1)
-
-
-def all_stitches(): return int(told_of_task('sutures', 'scene.yaml').strip('"'))
-
-
 def write(path, stitches):
     """One more stitch than are known, so that the hands are not done while the last one is looked at."""
-    whole = all_stitches()
-    parts = [stitch(k, p, k + 1 == whole) for k, p in enumerate(stitches + [{}] * (len(stitches) < whole))]
+    parts = [stitch(k, p, k + 1 == STITCHES) for k, p in enumerate(stitches + [{}] * (len(stitches) < STITCHES))]
     with open(path, 'w') as f:
-        f.write('format: filum-demonstration/1\ntitle: %s\ntools:\n' % told_of_task('title', 'scene.yaml'))
+        f.write('format: filum-demonstration/1\ntitle: %s\ntools:\n' % of_scene('title'))
         for tool in (0, 1, 2):
             f.write('  - tool: %d\n    keys:\n' % tool)
             last = -1.0
@@ -247,7 +243,7 @@ def sew(state, file, random_, log):
         def try_knot(n, choice, given_up):
             me, chosen = name('k', n), dict(bites[0], **choice)
             script = write(me + '.yaml', state['stitches'] + [chosen])
-            stops = ' '.join('%g' % (start + t) for t in (54.0, 60.0, 71.9, 76.4, 90.9 if k + 1 < all_stitches() else 89.5))
+            stops = ' '.join('%g' % (start + t) for t in (54.0, 60.0, 71.9, 76.4, 90.9 if k + 1 < STITCHES else 89.5))
             _, wrong = follow(me, lambda s: knot_wrong(k, s, s['t'] - start), given_up, bites[1], 'go %s %s %g %s' % (me, script, start + 90.95, stops))
             return (chosen, '%s_%.1f' % (me, start + 90.9)), wrong
         knot = race(knot_choices(random_, k), try_knot, 6, lambda n, c, w: log(k, 'knot', n, c, w))
@@ -259,7 +255,7 @@ def sew(state, file, random_, log):
 
 
 def main():
-    file, wanted = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else all_stitches()
+    file, wanted = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else STITCHES
     state = json.load(open(file)) if os.path.exists(file) else dict(stitches=[], pipe=None, count=0)
     journal = open(file + '.log', 'a')
     log = lambda *words: print(time.strftime('%H:%M:%S'), *words, file=journal, flush=True)
