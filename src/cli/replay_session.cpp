@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMostPictures = 3600.0;  // of some 10 kB each
 constexpr std::chrono::milliseconds kPeriod{16};
+constexpr double kTellEvery = 0.1;  // [s]
 
 struct Stopped {};  // leaves replay() when the viewer closes the recording
 
@@ -110,6 +111,7 @@ void ReplaySession::show_again() {
 void ReplaySession::show_loop() {
   auto last = std::chrono::steady_clock::now();
   double since_told = 0.0;  // [s]
+  double told_ready = -1.0;  // [s]
   while (!quit_.load()) {
     std::this_thread::sleep_for(kPeriod);
     const auto now = std::chrono::steady_clock::now();
@@ -120,23 +122,28 @@ void ReplaySession::show_loop() {
     std::optional<ReplayView> tell;
     {
       const std::lock_guard lock(mutex_);
-      if (changed_ || (moved && since_told > 0.1)) tell = ReplayView{session_, time_, duration_, playing_};
+      const double ready = ready_to();
+      if (changed_ || ((moved || ready != told_ready) && since_told > kTellEvery)) tell = ReplayView{session_, time_, duration_, ready, playing_};
       changed_ = false;
     }
     if (!tell) continue;
     since_told = 0.0;
+    told_ready = tell->ready;
     show_state_(*tell);
   }
+}
+
+double ReplaySession::ready_to() const {
+  const double last = pictures_.back().observation.time;
+  return last + 2.0 * interval_ >= duration_ ? duration_ : last;
 }
 
 bool ReplaySession::show_next(double elapsed) {
   Picture picture;
   {
     const std::lock_guard lock(mutex_);
-    const double loaded = pictures_.back().observation.time;
-    const bool all_loaded = loaded + 2.0 * interval_ >= duration_;
     if (playing_) {
-      time_ = std::min(time_ + elapsed, all_loaded ? duration_ : std::max(time_, loaded));
+      time_ = std::min(time_ + elapsed, std::max(time_, ready_to()));
       if (time_ >= duration_) {
         playing_ = false;
         changed_ = true;

@@ -46,6 +46,7 @@ class ReplaySession {
   void end_here();
   void keep_picture(const Observation& observation);
   void show_loop();
+  double ready_to() const;  // [s], under mutex_
   bool show_next(double elapsed);
 
   std::string session_;

@@ -211,6 +211,7 @@ std::string replay_state_message(const ReplayView& replay) {
                   {"session", replay.session},
                   {"time", replay.time},
                   {"duration", replay.duration},
+                  {"ready", replay.ready},
                   {"playing", replay.playing}});
 }
 

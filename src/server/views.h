@@ -89,6 +89,7 @@ struct ReplayView {
   std::string session;
   double time = 0.0;      // [s]
   double duration = 0.0;  // [s]
+  double ready = 0.0;     // [s], up to which it is computed and can be shown
   bool playing = false;
 };
 

@@ -155,6 +155,15 @@ struct Store::Impl {
         soci::use(row.scored), soci::use(row.passed), soci::use(row.entry.total);
   }
 
+  /// put(), unless another program that opened this store has just done so.
+  void put_once(const StoreEntry& entry) {
+    try {
+      put(entry);
+    } catch (const soci::soci_error&) {
+      if (select("id = :a AND :b = ''", entry.id, "").empty()) throw;
+    }
+  }
+
   std::vector<StoreEntry> select(const std::string& condition, const std::string& a, const std::string& b) {
     std::vector<StoreEntry> entries;
     Row row;
@@ -233,6 +242,7 @@ Store::Store(const std::string& folder, const std::string& index_connection)
   }
   if (!damaged) {
     impl_->guarded([&] { impl_->measure_unfinished(); });
+    adopt();
     return;
   }
   impl_->sql.reset();
@@ -301,6 +311,19 @@ std::optional<StoreEntry> Store::find(const std::string& id) const {
   });
 }
 
+void Store::adopt() {
+  for (const std::string& id : ids_in(impl_->folder)) {
+    if (find(id)) continue;
+    try {
+      const StoreEntry entry = entry_of(RecordingReader(file_of(id)), id);
+      impl_->guarded([&] { impl_->put_once(entry); });
+    } catch (const StoreError&) {
+      throw;
+    } catch (const InputError&) {  // check() names the damage
+    }
+  }
+}
+
 std::vector<StoreProblem> Store::rebuild() {
   std::vector<StoreProblem> problems;
   std::vector<StoreEntry> entries;
@@ -326,9 +349,9 @@ std::vector<StoreProblem> Store::check(bool deep) const {
   std::vector<StoreProblem> problems = impl_->found_on_opening;
   const std::vector<std::string> ids = ids_in(impl_->folder);
   for (const std::string& id : ids) {
-    if (!find(id)) problems.push_back({id, "is not in the index", "rebuild the index"});
     try {
       const RecordingReader recording(file_of(id));
+      if (!find(id)) problems.push_back({id, "is not in the index", "nothing to do: it is entered when the store is next opened"});
       if (const std::string damage = deep ? damage_of(recording) : ""; !damage.empty()) problems.push_back(damaged(id, damage));
     } catch (const InputError& error) {
       problems.push_back(damaged(id, error.what()));
@@ -337,7 +360,7 @@ std::vector<StoreProblem> Store::check(bool deep) const {
   for (const StoreEntry& entry : list())
     if (!std::binary_search(ids.begin(), ids.end(), entry.id))
       problems.push_back(
-          {entry.id, "is in the index but its file is gone", "restore the file or rebuild the index"});
+          {entry.id, "is in the index but its file is gone", "restore the file"});
   return problems;
 }
 

@@ -46,7 +46,8 @@ struct StoreError : InputError {
 
 class Store {
  public:
-  /// Opens or creates. A damaged index is set aside, built anew from the recordings, and reported by check().
+  /// Opens or creates. A damaged index is set aside, built anew from the recordings, and reported by check(). Recordings that
+  /// the index does not know (it is gone, or they were copied into the folder) are entered.
   /// Sessions that were cut short get the length of what was stored of them. Throws StoreError when the folder cannot
   /// be made or written, the index was made by a newer program, or is sound but locked or without room.
   /// Not thread-safe: one thread owns a Store.
@@ -74,6 +75,7 @@ class Store {
 
  private:
   struct Impl;
+  void adopt();
   std::unique_ptr<Impl> impl_;
 };
 

@@ -51,7 +51,7 @@ export function startMock({ port = 0, duration = 8 } = {}) {
   });
   let force = false;
   const all = (message) => { for (const { socket } of state.sockets) socket.send(JSON.stringify(message)); };
-  const sayReplay = () => all({ type: "replay_state", session: state.replay, time: state.time, duration, playing: state.playing });
+  const sayReplay = () => all({ type: "replay_state", session: state.replay, time: state.time, duration, ready: duration, playing: state.playing });
   const finish = (finished) => { state.running = false; all({ ...resultOf("s1", duration), finished }); all(sessionState(state)); };
   const timer = setInterval(() => {
     const moving = state.running || (state.replay && state.playing);

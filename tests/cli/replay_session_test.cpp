@@ -63,6 +63,8 @@ TEST_F(ReplaySessionTest, ShowsTheBeginningThenWhereItIsToldToGo) {
   EXPECT_EQ(screen.told[0].session, "s1");
   EXPECT_NEAR(screen.told[0].duration, 0.5, 0.01);
   EXPECT_FALSE(screen.told[0].playing);
+  ASSERT_TRUE(screen.wait([&] { return screen.told.back().ready == screen.told.back().duration; })) << "without being asked";
+  EXPECT_TRUE(std::is_sorted(screen.told.begin(), screen.told.end(), [](const ReplayView& a, const ReplayView& b) { return a.ready < b.ready; }));
   replay.seek(0.25);
   EXPECT_TRUE(screen.wait([&] { return std::abs(screen.times.back() - 0.25) < 0.04; })) << screen.times.back();
   replay.seek(99.0);

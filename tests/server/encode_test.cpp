@@ -112,7 +112,7 @@ TEST(Encode, EveryOtherMessageFollowsTheSchema) {
   EXPECT_EQ(fault(session_state_message({}, 0, false, 1)), "");
   EXPECT_EQ(fault(session_state_message({"running", "knot-square", "demo", true, "id", "", -1.0}, 1, true, 2)), "");
   EXPECT_EQ(fault(session_state_message({"ended", "knot-square", "demo", false, "id", "", 0.4}, 1, true, 2)), "");
-  EXPECT_EQ(fault(replay_state_message({"id", 1.0, 2.0, true})), "");
+  EXPECT_EQ(fault(replay_state_message({"id", 1.0, 2.0, 1.5, true})), "");
   EXPECT_EQ(fault(error_message({"a", "b", "c"})), "");
   EXPECT_EQ(schema.fault(json::parse(task_list_json(hello.tasks)), "TaskList"), "");
   EXPECT_EQ(schema.fault(json::parse(health_json("0.1.0", {}, 2, 1.0, 3)), "Health"), "");

@@ -86,6 +86,31 @@ TEST(Store, ADamagedIndexIsBuiltAnewFromTheRecordings) {
   EXPECT_NE(store.check(false)[0].what.find("damaged"), std::string::npos);
 }
 
+TEST(Store, RecordingsThatTheIndexDoesNotKnowAreEnteredOnOpening) {
+  const Folder folder;
+  std::string id;
+  {
+    Store store(folder.file("s"));
+    id = record_one(store, "A17").id;
+  }
+  std::filesystem::remove(folder.file("s/index.sqlite"));
+  {
+    const Store store(folder.file("s"));
+    ASSERT_TRUE(store.find(id).has_value()) << "the index was gone";
+    EXPECT_EQ(store.find(id)->participant, "A17");
+    EXPECT_EQ(store.find(id)->total, 87.5);
+    EXPECT_TRUE(store.check(false).empty());
+  }
+  std::filesystem::copy_file(folder.file("s/" + id + ".filum-session"), folder.file("s/from-another-machine.filum-session"));
+  std::ofstream(folder.file("s/rubbish.filum-session")) << "rubbish";
+  const Store store(folder.file("s"));
+  EXPECT_TRUE(store.find("from-another-machine").has_value());
+  EXPECT_FALSE(store.find("rubbish").has_value());
+  EXPECT_EQ(store.list().size(), 2u);
+  ASSERT_EQ(store.check(false).size(), 1u);
+  EXPECT_EQ(store.check(false)[0].id, "rubbish");
+}
+
 TEST(Store, AnIndexFromANewerProgramIsRefusedAndLeftAlone) {
   const Folder folder;
   { Store store(folder.file("s")); }

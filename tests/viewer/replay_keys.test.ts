@@ -13,11 +13,11 @@ const view = () => ({
 
 describe("keys in a replay", () => {
   let page: ReplayPage, sent: { type: string; time?: number }[];
-  const app = { microscope: view, online: false, hello: null, session: null, replay: { time: 10, duration: 30, playing: false }, send: (message: { type: string }) => { sent.push(message); return true; } };
+  const app = { microscope: view, online: false, hello: null, session: null, replay: { time: 10, duration: 30, ready: 30, playing: false }, send: (message: { type: string }) => { sent.push(message); return true; } };
   beforeEach(() => {
     sent = [];
     zooms.length = 0;
-    app.replay = { time: 10, duration: 30, playing: false };
+    app.replay = { time: 10, duration: 30, ready: 30, playing: false };
     page = new ReplayPage(app as unknown as App, "s1");
     document.body.replaceChildren(page.element);
   });
@@ -55,6 +55,23 @@ describe("keys in a replay", () => {
     for (const key of ["ArrowDown", "ArrowUp", " ", "Enter", "Home", "End", "h"]) expect(press(key, "select"), key).toBe(false);
     expect(press("+", "select")).toBe(true);
     expect(sent).toEqual([]);
+  });
+
+  it("to a moment that is not computed yet show how far it is, and that it comes by itself", () => {
+    app.replay = { time: 10, duration: 30, ready: 12, playing: false };
+    const state = (): void => page.onmessage({ type: "replay_state", session: "s1", ...app.replay });
+    const note = (): string => page.element.querySelector(".over")!.textContent!;
+    state();
+    expect(note()).toBe("");
+    press("End", ".play");
+    expect(note()).toContain("Computing up to 0:30.0, now at 0:12.0");
+    expect(page.element.querySelector("progress")!.value).toBeCloseTo(12 / 30);
+    app.replay.ready = 20;
+    state();
+    expect(page.element.querySelector("progress")!.value).toBeCloseTo(20 / 30);
+    app.replay.ready = 30;
+    state();
+    expect(note()).toBe("");
   });
 
   it("press the button in focus", () => {

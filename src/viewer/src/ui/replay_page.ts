@@ -13,6 +13,7 @@ import { StitchList } from "./stitch_panel";
 
 const kPanelsEvery = 60; // [ms]
 const kSeekEvery = 50; // [ms], while dragging
+const kBehind = 0.5; // [s], more than two pictures of a session of twelve minutes
 
 export class ReplayPage implements Page {
   readonly title = "Replay";
@@ -26,6 +27,9 @@ export class ReplayPage implements Page {
   private readonly play = h("button", { class: "primary play", onclick: () => this.toggle() }, "▶ Play");
   private readonly scrub = h("input", { type: "range", min: 0, max: 1, step: 0.01, value: 0, "aria-label": "Time in the recording", class: "scrub" });
   private readonly marks = h("div", { class: "marks", "aria-hidden": "true" });
+  private readonly ready = h("div", { class: "ready", "aria-hidden": "true" });
+  private readonly computed = h("progress", { max: 1, value: 0, "aria-label": "Share that is computed" });
+  private readonly computing = h("p", { class: "loading", role: "status" });
   private readonly clock = h("output", { class: "time" }, "");
   private readonly unhook: () => void;
   private steps: StepPanel | null = null;
@@ -53,7 +57,7 @@ export class ReplayPage implements Page {
     this.view.onclick = (event) => this.clicked(event);
     this.scrub.addEventListener("input", () => this.dragged());
     this.scrub.addEventListener("change", () => { this.dragging = false; this.seek(Number(this.scrub.value)); });
-    const transport = h("div", { class: "transport", role: "group", "aria-label": "Replay" }, this.play, h("div", { class: "timeline" }, this.marks, this.scrub), this.clock);
+    const transport = h("div", { class: "transport", role: "group", "aria-label": "Replay" }, this.play, h("div", { class: "timeline" }, this.ready, this.marks, this.scrub), this.clock);
     this.element.append(this.left, h("div", { class: "middle" }, this.view.element, this.warnings.element, this.over), this.right, transport, opticsBar(this.view));
     this.over.append(h("p", { class: "loading", role: "status" }, "Opening the recording…"));
     if (app.online && app.hello) this.open();
@@ -120,6 +124,7 @@ export class ReplayPage implements Page {
     if (this.app.replay) this.app.replay.time = to;
     this.app.send({ type: "seek", time: to });
     this.showTime(to, end);
+    this.showReady();
   }
 
   private jump(event: TimedEvent | undefined): boolean {
@@ -173,7 +178,7 @@ export class ReplayPage implements Page {
   private showState(): void {
     const state = this.app.replay;
     if (!state) return;
-    clear(this.over);
+    this.showReady();
     this.scrub.max = String(state.duration);
     setText(this.play, state.playing ? "❚❚ Pause" : "▶ Play");
     this.showTime(state.time, state.duration);
@@ -183,6 +188,19 @@ export class ReplayPage implements Page {
       this.wanted = null;
       this.seek(to);
     }
+  }
+
+  /// A recording is stepped anew: a moment that the computation has not come to yet is said to come.
+  private showReady(): void {
+    const state = this.app.replay;
+    if (!state) return;
+    const share = state.duration > 0 ? Math.min(1, state.ready / state.duration) : 1;
+    this.ready.style.width = `calc(${(100 * share).toFixed(1)}% - 16px)`;
+    const waits = state.time > state.ready + kBehind;
+    if (!waits) return clear(this.over);
+    this.computed.value = state.ready / state.time;
+    setText(this.computing, `Computing up to ${clock(state.time)}, now at ${clock(state.ready)}. It is shown when it is there.`);
+    if (!this.computing.isConnected) this.over.replaceChildren(h("div", { class: "card endcard" }, this.computing, this.computed));
   }
 
   private showTime(time: number, duration: number): void {
