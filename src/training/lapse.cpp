@@ -8,31 +8,40 @@
 
 #include "base/numbers.h"
 #include "training/cut_line.h"
+#include "training/stitch_pairs.h"
 
 namespace filum {
 namespace {
 
-Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut) {
+Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut, bool stumps) {
   const PassObservation& p = t.passes[static_cast<std::size_t>(a)];
   const PassObservation& q = t.passes[static_cast<std::size_t>(b < 0 ? a : b)];
   Stitch s;
   s.first = a;
   s.second = b;
-  const bool whole = b >= 0 || p.bite_exit * p.bite_entry < 0.0;  // both sides in one pass: the cut lies between
+  const bool whole = b >= 0 || is_whole(p);
   s.bite[0] = std::abs(p.bite_entry);
   s.bite[1] = whole ? std::abs(q.bite_exit) : std::numeric_limits<double>::quiet_NaN();
   s.entry_angle = p.entry_angle;
   s.exit_angle = q.exit_angle;
   const CutPlace in{p.entry_rest, p.side}, out{q.exit_rest, q.side};
-  s.obliquity = std::atan2(std::abs(cut.along(in, out)), cut.across(in, out));
+  // Two stumps lie apart in the open clamp, and that space is no part of a bite.
+  const double across = stumps && whole ? s.bite[0] + s.bite[1] : cut.across(in, out);
+  s.obliquity = std::atan2(std::abs(cut.along(in, out)), across);
   s.depth = std::min(p.depth_share, q.depth_share);
   s.position = cut.position(in, out);
   s.tension = std::max(p.tension, q.tension);
   s.peak_force = std::max(p.peak_force, q.peak_force);
   s.torn = std::max(p.torn, q.torn);
+  s.lost = is_lost(p) || is_lost(q);
   s.joins = whole && p.state == PassObservation::State::thread && q.state == PassObservation::State::thread;
   return s;
 }
+
+const std::vector<std::string> kLapses = {"oblique", "wide-bite", "partial-thickness", "unequal-spacing", "back-wall", "loose-knot", "too-tight",
+                                          "wall-tear", "thread-in-lumen", "disrupted-line", "edge-overlap"};
+
+double wrapped(double a) { return a - kTurn * std::floor(a / kTurn); }
 
 }  // namespace
 
@@ -56,53 +65,61 @@ LapseRules load_lapse_rules(const std::string& path) {
   r.line_gap = file.number_or("line_gap_thicknesses", r.line_gap, Range::positive());
   r.neighbours = file.quantity_or("neighbours", "deg", r.neighbours, Range::between(0.0, std::numbers::pi));
   r.thread_inside = file.quantity_or("thread_inside", "mm", r.thread_inside, Range::positive());
+  if (file.has("critical")) r.critical = file.texts("critical");
+  for (const std::string& name : r.critical)
+    if (std::find(kLapses.begin(), kLapses.end(), name) == kLapses.end()) file.refuse("critical", "names of lapses, such as back-wall");
   file.finish();
   return r;
 }
 
-std::vector<Stitch> stitches_of(const TissueObservation& t, const std::vector<double>& pass_time, const TissueDescription& scene) {
+std::vector<Stitch> stitches_of(const TissueObservation& t, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
+                                const TissueDescription& scene) {
   const CutLine cut(scene);
+  const bool stumps = scene.lumen && scene.edges[0].rim.empty();
   std::vector<Stitch> stitches;
   for (int k = 0; k < t.n_passes; ++k) {
-    const PassObservation& p = t.passes[static_cast<std::size_t>(k)];
-    if (!p.out) continue;
-    const bool pairs = k + 1 < t.n_passes && t.passes[static_cast<std::size_t>(k + 1)].out && t.passes[static_cast<std::size_t>(k + 1)].side != p.side;
-    const bool both = p.bite_entry * p.bite_exit < 0.0;
-    stitches.push_back(from_passes(t, k, !both && pairs ? k + 1 : -1, cut));
-    if (!both && pairs) ++k;
-    if (static_cast<std::size_t>(k) < pass_time.size()) stitches.back().time = pass_time[static_cast<std::size_t>(k)];
+    if (!t.passes[static_cast<std::size_t>(k)].out) continue;
+    if (std::any_of(pairs.begin(), pairs.end(), [k](const auto& pair) { return pair[1] == k; })) continue;
+    const auto pair = std::find_if(pairs.begin(), pairs.end(), [k](const auto& one) { return one[0] == k; });
+    stitches.push_back(from_passes(t, k, pair == pairs.end() ? -1 : (*pair)[1], cut, stumps));
+    const auto last = static_cast<std::size_t>(std::max(k, stitches.back().second));
+    if (last < pass_time.size()) stitches.back().time = pass_time[last];
   }
   return stitches;
 }
 
-std::vector<double> spacings_of(const std::vector<Stitch>& stitches) {
+std::vector<double> spacings_of(const std::vector<Stitch>& stitches, const TissueDescription& scene, bool complete) {
+  const double round = scene.lumen ? kTurn * CutLine(scene).radius() : 0.0;  // [m]
   std::vector<double> at, gaps;
-  for (const Stitch& s : stitches) at.push_back(s.position);
+  for (const Stitch& s : stitches)
+    if (!s.lost) at.push_back(scene.lumen ? s.position - round * std::floor(s.position / round) : s.position);
   std::sort(at.begin(), at.end());
   for (std::size_t k = 1; k < at.size(); ++k) gaps.push_back(at[k] - at[k - 1]);
+  if (!scene.lumen || gaps.empty()) return gaps;
+  gaps.push_back(round - (at.back() - at.front()));
+  if (!complete) gaps.erase(std::max_element(gaps.begin(), gaps.end()));
   return gaps;
 }
 
-std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, double thickness) {
+std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, const std::vector<double>& spacings, double thickness, double end) {
   std::vector<Lapse> found;
   for (std::size_t k = 0; k < stitches.size(); ++k) {
     const Stitch& s = stitches[k];
     const int i = static_cast<int>(k);
-    const double widest = std::isnan(s.bite[1]) ? s.bite[0] : std::max(s.bite[0], s.bite[1]);
+    if (s.torn > rules.tear) found.push_back({"wall-tear", i, std::isnan(s.tear_time) ? s.time : s.tear_time, s.torn, "m"});
+    if (s.lost) continue;
+    const double widest = std::fmax(s.bite[0], s.bite[1]), bite = std::fmin(s.bite[0], s.bite[1]);
     if (s.obliquity > rules.oblique) found.push_back({"oblique", i, s.time, s.obliquity * 180.0 / std::numbers::pi, "deg"});
     if (widest > rules.wide_bite * thickness) found.push_back({"wide-bite", i, s.time, widest / thickness, "thicknesses"});
     if (s.depth < rules.least_depth - 1e-6) found.push_back({"partial-thickness", i, s.time, s.depth, "share"});
-    const double bite = std::isnan(s.bite[1]) ? s.bite[0] : std::min(s.bite[0], s.bite[1]);
-    if (s.tension > rules.tight * bite) found.push_back({"too-tight", i, s.time, s.tension / bite, "N/m"});
-    if (s.torn > rules.tear) found.push_back({"wall-tear", i, s.time, s.torn, "m"});
-    if (s.slack > rules.slack) found.push_back({"loose-knot", i, s.time, s.slack, "m"});
+    if (s.tension > rules.tight * bite) found.push_back({"too-tight", i, end, s.tension / bite, "N/m"});
+    if (s.slack > rules.slack) found.push_back({"loose-knot", i, end, s.slack, "m"});
   }
-  const std::vector<double> gaps = spacings_of(stitches);
-  if (gaps.size() < 2) return found;
+  if (spacings.size() < 2) return found;
   double mean = 0.0, square = 0.0;
-  for (const double g : gaps) mean += g / static_cast<double>(gaps.size());
-  for (const double g : gaps) square += (g - mean) * (g - mean) / static_cast<double>(gaps.size());
-  const double variation = std::sqrt(square) / mean, ratio = *std::max_element(gaps.begin(), gaps.end()) / *std::min_element(gaps.begin(), gaps.end());
+  for (const double g : spacings) mean += g / static_cast<double>(spacings.size());
+  for (const double g : spacings) square += (g - mean) * (g - mean) / static_cast<double>(spacings.size());
+  const double variation = std::sqrt(square) / mean, ratio = *std::max_element(spacings.begin(), spacings.end()) / *std::min_element(spacings.begin(), spacings.end());
   if (variation > rules.spacing_variation || ratio > rules.spacing_ratio) found.push_back({"unequal-spacing", -1, stitches.back().time, variation, "-"});
   return found;
 }
@@ -127,12 +144,11 @@ void find_join_lapses(const LapseRules& rules, const JoinReport& join, double ti
   if (join.overlap > rules.overlap) found.push_back({"edge-overlap", -1, time, join.overlap, "thicknesses"});
 }
 
-void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, double time,
-                     std::vector<Lapse>& found) {
+void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, bool complete,
+                     double time, std::vector<Lapse>& found) {
   if (!scene.lumen || join.sector_gap.empty()) return;
   const CutLine cut(scene);
   const double width = kTurn / static_cast<double>(join.sector_gap.size());
-  const auto wrapped = [](double a) { return a - kTurn * std::floor(a / kTurn); };
   std::vector<std::pair<double, int>> at;  // angle of each stitch, ascending
   const auto told = [&](int k) { return std::any_of(found.begin(), found.end(), [&](const Lapse& l) { return l.stitch == k && std::string_view(l.name) == "loose-knot"; }); };
   for (std::size_t k = 0; k < stitches.size(); ++k) {
@@ -146,12 +162,16 @@ void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const Tiss
   std::sort(at.begin(), at.end());
   for (std::size_t k = 0; k < at.size() && at.size() > 1; ++k) {
     const double from = at[k].first, span = wrapped(at[(k + 1) % at.size()].first - from);
-    if (span > rules.neighbours) continue;
+    if (!complete && span > rules.neighbours) continue;
     double widest = 0.0;
     for (std::size_t s = 0; s < join.sector_gap.size(); ++s)
       if (const double middle = wrapped(width * (static_cast<double>(s) + 0.5) - from); middle < span) widest = std::max(widest, join.sector_gap[s] / scene.thickness);
     if (widest > rules.line_gap) found.push_back({"disrupted-line", at[k].second, time, widest, "thicknesses"});
   }
+}
+
+void mark_critical(const LapseRules& rules, std::vector<Lapse>& found) {
+  for (Lapse& l : found) l.critical = std::find(rules.critical.begin(), rules.critical.end(), l.name) != rules.critical.end();
 }
 
 }  // namespace filum

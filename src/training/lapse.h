@@ -1,9 +1,10 @@
 #pragma once
 // Stitches from the ways of the needle through the tissue, and what is wrong with them, by rules from a file
 // (curricula/lapses/*.yaml, format filum-lapses/1). The lapses are those of the Anastomosis Lapse Index that geometry and force can tell;
-// all marks are simulator-derived estimates. A stitch is the pass into one side of a cut together with the next pass out of the
-// other side, or a lone pass. Test: lapse_test.
+// all marks are simulator-derived estimates. A stitch is two bites that belong together (training/stitch_pairs.h), or a lone pass.
+// Test: lapse_test.
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
@@ -30,7 +31,8 @@ struct LapseRules {
   // of joins whose stitches are to be tied, under pressure; infinite: not looked for
   double loose_gap = std::numeric_limits<double>::infinity();  // thicknesses, between the edges at a stitch
   double line_gap = std::numeric_limits<double>::infinity();   // thicknesses, between two neighbouring stitches
-  double neighbours = 1.75;       // [rad], around the vessel: stitches further apart have no line between them yet
+  double neighbours = 1.75;       // [rad], around the vessel: while stitches are still to come, those further apart have no line between them yet
+  std::vector<std::string> critical;  // lapses with which a task is not passed, whatever its points
 };
 
 LapseRules load_lapse_rules(const std::string& path);
@@ -38,17 +40,20 @@ LapseRules load_lapse_rules(const std::string& path);
 struct Stitch {
   int first = 0, second = -1;     // passes
   double time = 0.0;              // [s], of the last puncture
+  double tear_time = std::numeric_limits<double>::quiet_NaN();  // [s], when it had torn as far as counts
   double bite[2] = {0, 0};        // [m], distance from the cut on either side; the second NaN for half a stitch
   double entry_angle = 0.0, exit_angle = 0.0;  // [rad], of the needle against the surface
   double obliquity = 0.0;         // [rad], of the line from entry to exit against the normal of the cut, seen from above
   double depth = 0.0;             // share of the thickness, the least of both sides
   double position = 0.0;          // [m], along the cut
-  double tension = 0.0, peak_force = 0.0, torn = 0.0;  // [N], [N], [m]
+  double tension = 0.0;           // [N], in the thread that is left in it
+  double peak_force = 0.0, torn = 0.0;  // [N], [m]
   std::string knot;               // its class (knot_classifier.h), empty: the stitch is not tied
   int throws = 0;
-  double tail = std::numeric_limits<double>::quiet_NaN();  // [m]
+  double tail = std::numeric_limits<double>::quiet_NaN(), short_tail = tail;  // [m], the longer and the shorter end
   double slack = std::numeric_limits<double>::quiet_NaN();  // [m], thread in its knot and loop beyond the shortest way round the bites that the loop holds
   bool joins = false;             // thread is in both sides of the cut: not a lone pass, not torn out
+  bool lost = false;              // torn or pulled out on one side at least
 };
 
 struct Lapse {
@@ -57,11 +62,17 @@ struct Lapse {
   double time = 0.0;              // [s]
   double value = 0.0;
   const char* unit = "-";
+  bool critical = false;
 };
 
-std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<double>& pass_time, const TissueDescription& scene);
-std::vector<double> spacings_of(const std::vector<Stitch>& stitches);  // [m], between neighbours along the cut
-std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, double thickness);
+/// `pairs`: passes of the stitches. All other passes that came out stand alone.
+std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
+                                const TissueDescription& scene);
+/// [m], between neighbours along the cut; of stitches that were lost none. A cut round a vessel has no end: once all its stitches are `complete` the last is the
+/// first one's neighbour; until then the widest space is where it is still open.
+std::vector<double> spacings_of(const std::vector<Stitch>& stitches, const TissueDescription& scene, bool complete);
+/// Of the stitches one by one, and of their spacing. `end` [s]: the moment that knots and tension were looked at.
+std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, const std::vector<double>& spacings, double thickness, double end);
 /// "back-wall": the needle came into the lumen at one place of the vessel and left it more than rules.back_wall around it (CutLine::round_lumen).
 void find_back_walls(const LapseRules& rules, const TissueObservation& tissue, const std::vector<double>& pass_time, const TissueDescription& scene,
                      const std::vector<Stitch>& stitches, std::vector<Lapse>& found);
@@ -69,7 +80,10 @@ void find_back_walls(const LapseRules& rules, const TissueObservation& tissue, c
 void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found);
 /// "loose-knot": the edges stand apart at a stitch that was to be tied (told once a stitch, whether by this or by its slack); "disrupted-line": they
 /// do between two neighbours. From the gaps of the sectors under pressure. Of stitches that join both edges only: a lone pass ties nothing.
-void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, double time,
-                     std::vector<Lapse>& found);
+/// `complete`: no more stitches are to come.
+void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, bool complete,
+                     double time, std::vector<Lapse>& found);
+/// Marks those that the rules call critical.
+void mark_critical(const LapseRules& rules, std::vector<Lapse>& found);
 
 }  // namespace filum

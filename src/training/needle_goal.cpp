@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <numbers>
 
 #include "training/needle_task.h"
@@ -22,6 +23,23 @@ StitchRule parse_stitch_rule(const YamlNode& node) {
   r.running = node.flag_or("running", false);
   if (r.running && r.apart == 0.0) node.refuse("apart", "how far a running thread goes from stitch to stitch");
   return r;
+}
+
+std::vector<std::string> parse_knots(const YamlNode& node) {
+  const std::vector<std::string> known = {"overhand", "square", "surgeons", "granny", "triple"}, knots = node.texts("knot");
+  for (const std::string& name : knots)
+    if (std::find(known.begin(), known.end(), name) == known.end()) node.refuse("knot", "overhand, square, surgeons, granny or triple");
+  if (knots.empty()) node.refuse("knot", "at least one class of knot");
+  return knots;
+}
+
+JoinGate parse_join_gate(const YamlNode& node) {
+  JoinGate g;
+  g.leak = node.quantity_or("most_leak", "ml/min", g.leak, Range::positive());
+  g.narrowing = node.number_or("most_narrowing", g.narrowing, Range::between(0.0, 1.0));
+  g.patent = node.flag_or("patent", false);
+  g.source = node.text("source");
+  return g;
 }
 
 NeedleGoal parse_needle_goal(const YamlNode& node) {
@@ -54,7 +72,7 @@ NeedleGoal parse_needle_goal(const YamlNode& node) {
     g.kind = NeedleGoal::Kind::tie;
     g.passes = node.integer("passes", 1, kMaxPasses);
     g.throws = node.integer("throws", 1, 10);
-    if (node.has("knot")) g.knot = node.choice("knot", {"overhand", "square", "surgeons", "granny", "triple"});
+    if (node.has("knot")) g.knots = parse_knots(node);
     g.loop = node.quantity("loop", "mm", Range::positive());
     g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
   } else if (kind == "pass" || kind == "draw") {

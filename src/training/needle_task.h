@@ -1,6 +1,7 @@
 #pragma once
 // What a task with a needle asks for (training/needle_watch.h), and by which rules lapses are found (training/lapse.h).
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,10 +31,18 @@ struct NeedleGoal {
   double seconds = 0.0;           // [s], load, present and tie: kept so long
   int passes = 0;                 // pass, draw, tie, cut: ways through the tissue
   int throws = 0;                 // tie: at least
-  std::string knot;               // tie: its class, empty: any
+  std::vector<std::string> knots; // tie: classes that count, none: any
   double loop = 0.0;              // [m], tie: thread in bites and knot at most
   double tail = 0.0;              // [m], draw: thread left before the first entry
   StitchRule stitch;              // stitch
+};
+
+/// What the join has to be when its clamps come off at the end, for the task to be passed; infinite: not asked for.
+struct JoinGate {
+  double leak = std::numeric_limits<double>::infinity();       // [m3/s], at most
+  double narrowing = std::numeric_limits<double>::infinity();  // [-], at most
+  bool patent = false;
+  std::string source;             // empty: nothing is asked for
 };
 
 struct RatingScale;  // training/rating_scale.h
@@ -41,11 +50,14 @@ struct RatingScale;  // training/rating_scale.h
 struct NeedleTask {
   std::vector<NeedleGoal> goals;
   LapseRules lapses;
+  JoinGate join;
   bool has_tissue = false;
   std::shared_ptr<const RatingScale> scale;  // of raters, or none
 };
 
 /// A step of a task file. Throws InputError.
 NeedleGoal parse_needle_goal(const YamlNode& node);
+/// Of the key `join` of a task file. Throws InputError.
+JoinGate parse_join_gate(const YamlNode& node);
 
 }  // namespace filum

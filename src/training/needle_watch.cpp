@@ -42,12 +42,27 @@ double thread_left(const Observation& o) {
   return kNaN;
 }
 
+/// [N], in the thread at its place `arc`: the larger pull of the two edges about it.
+double tension_at(const Observation& o, double arc) {
+  const std::size_t edges = std::min(o.tension.size(), static_cast<std::size_t>(std::max(o.n_nodes - 1, 0)));
+  for (std::size_t i = 0; i < edges; ++i)
+    if (o.arc[i + 1] >= arc) return std::max(o.tension[i], i + 1 < edges ? o.tension[i + 1] : 0.0);
+  return kNaN;
+}
+
+void name_tension(const Observation& o, Stitch& s) {
+  s.tension = kNaN;
+  for (const int k : {s.first, s.second})
+    if (const double arc = k < 0 ? -1.0 : o.tissue.passes[static_cast<std::size_t>(k)].arc; arc >= 0.0) s.tension = std::fmax(s.tension, tension_at(o, arc));
+}
+
 }  // namespace
 
 double needle_value(Measure measure, const NeedleReport& r) {
   const auto worst = [&](auto value) {
     double most = kNaN;
-    for (const Stitch& s : r.stitches) most = std::isnan(most) ? value(s) : std::max(most, value(s));
+    for (const Stitch& s : r.stitches)
+      if (s.joins) most = std::fmax(most, value(s));
     return most;
   };
   switch (measure) {
@@ -64,9 +79,9 @@ double needle_value(Measure measure, const NeedleReport& r) {
     case Measure::stitch_order:
       return r.out_of_turn < 0 ? kNaN : r.out_of_turn;
     case Measure::stitches:
-      return r.has_tissue ? static_cast<double>(r.stitches.size()) : kNaN;
+      return r.has_tissue ? static_cast<double>(std::count_if(r.stitches.begin(), r.stitches.end(), [](const Stitch& s) { return s.joins; })) : kNaN;
     case Measure::bite_inequality:
-      return worst([](const Stitch& s) { return std::isnan(s.bite[1]) ? 1.0 : std::abs(s.bite[0] - s.bite[1]) / std::max(s.bite[0], s.bite[1]); });
+      return worst([](const Stitch& s) { return std::abs(s.bite[0] - s.bite[1]) / std::max(s.bite[0], s.bite[1]); });
     case Measure::bite_widest:
       return worst([&](const Stitch& s) { return std::fmax(s.bite[0], s.bite[1]) / r.thickness; });
     case Measure::entry_error:
@@ -82,9 +97,7 @@ double needle_value(Measure measure, const NeedleReport& r) {
   }
 }
 
-NeedleWatch::NeedleWatch(const NeedleTask& task, const SceneDescription& scene) : task_(task), scene_(scene), order_(task.goals, scene.tissue) {
-  pass_time_.reserve(kMaxPasses);
-}
+NeedleWatch::NeedleWatch(const NeedleTask& task, const SceneDescription& scene) : task_(task), scene_(scene), order_(task.goals, scene.tissue), pass_time_(kMaxPasses, 0.0), tear_time_(kMaxPasses, kNaN) {}
 
 bool NeedleWatch::held_only_by(const Observation& o, int tool) const {
   for (int i = 0; i < o.n_tools; ++i)
@@ -118,7 +131,7 @@ bool NeedleWatch::tied(const NeedleGoal& g, const Observation& o) {
   if (passes_done(o.tissue) < g.passes) return false;
   int held = 0;
   for (const StitchKnot& k : knots_in_tissue(o, 1)) {
-    if (!(k.knot.n_throws >= g.throws && k.loop() <= g.loop) || (!g.knot.empty() && k.knot.knot_class != g.knot)) continue;
+    if (!(k.knot.n_throws >= g.throws && k.loop() <= g.loop) || (!g.knots.empty() && std::find(g.knots.begin(), g.knots.end(), k.knot.knot_class) == g.knots.end())) continue;
     for (int i = 0; i < o.tissue.n_passes; ++i) held += k.holds(o.tissue.passes[static_cast<std::size_t>(i)].arc) ? 1 : 0;
   }
   return tied_ = held >= g.passes;
@@ -167,6 +180,17 @@ bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {
   return now && kept_ >= g.seconds;
 }
 
+/// Before the new passes are kept: a way that was drawn back and made again counts from then.
+void NeedleWatch::keep_times(const TissueObservation& t, double time) {
+  for (int i = 0; i < t.n_passes; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const bool was_out = i < tissue_.n_passes && tissue_.passes[k].out;
+    if (t.passes[k].out && !was_out) pass_time_[k] = time;
+    if (t.passes[k].torn <= task_.lapses.tear) tear_time_[k] = kNaN;
+    else if (std::isnan(tear_time_[k])) tear_time_[k] = time;
+  }
+}
+
 void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events) {
   for (int k = 0; k < o.n_events; ++k) {
     const std::string_view name = o.events[static_cast<std::size_t>(k)].name;
@@ -175,13 +199,13 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
   }
   blood_.observe(o);
   time_ = o.time;
+  keep_times(o.tissue, o.time);
   tissue_.n_passes = o.tissue.n_passes;
   tissue_.soundness = o.tissue.soundness;
   for (int k = 0; k < o.tissue.n_passes; ++k) {
     const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(k)];
     tissue_.passes[static_cast<std::size_t>(k)] = p;
     report_.peak_force = std::max(report_.peak_force, p.peak_force);
-    if (p.out && static_cast<int>(pass_time_.size()) == k) pass_time_.push_back(o.time);
   }
   order_.observe(o, events);
   if (done() || !scored) return;
@@ -203,17 +227,24 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
   r.has_tissue = task_.has_tissue;
   if (!r.has_tissue) return r;
   r.thickness = scene_.tissue.thickness;
-  r.stitches = stitches_of(tissue_, pass_time_, scene_.tissue);
+  r.stitches = stitches_of(tissue_, order_.pairs().with_needle(tissue_), pass_time_, scene_.tissue);
+  for (Stitch& s : r.stitches) {
+    s.tear_time = std::fmin(tear_time_[static_cast<std::size_t>(s.first)], s.second < 0 ? kNaN : tear_time_[static_cast<std::size_t>(s.second)]);
+    if (last != nullptr) name_tension(*last, s);
+  }
   if (last != nullptr && !r.stitches.empty()) for (const StitchKnot& k : knots_in_tissue(*last)) name_knots(k, tissue_, r.stitches);
-  r.lapses = lapses_of(task_.lapses, r.stitches, r.thickness);
+  const bool complete = done() && std::isfinite(task_.lapses.line_gap);  // no other rules ask for the whole way round
+  r.spacings = spacings_of(r.stitches, scene_.tissue, complete);
+  r.lapses = lapses_of(task_.lapses, r.stitches, r.spacings, r.thickness, time_);
   find_back_walls(task_.lapses, tissue_, pass_time_, scene_.tissue, r.stitches, r.lapses);
   r.join = join;
   if (blood_.clamps().any()) r.clamps = blood_.clamps();
   if (blood_.milking().tests() + blood_.milking().spoiled > 0 || !std::isnan(blood_.milking().volume)) r.milking = blood_.milking();
   if (join) {
     find_join_lapses(task_.lapses, *join, time_, r.lapses);
-    find_gap_lapses(task_.lapses, *join, scene_.tissue, r.stitches, time_, r.lapses);
+    find_gap_lapses(task_.lapses, *join, scene_.tissue, r.stitches, complete, time_, r.lapses);
   }
+  mark_critical(task_.lapses, r.lapses);
   r.soundness = tissue_.soundness;
   r.rules = task_.lapses.title;
   r.scale = task_.scale;

@@ -7,7 +7,7 @@
 //   draw     the thread follows until no more than `tail` is left before the first entry (of the thread that hangs on the needle now)
 //   eye      the needle has gone into the card at one mark and come out of it at another, on one way after the eyes before it
 //   tie      a knot of so many throws holds those ways, drawn down until no more thread is in its loop than `loop`, for `seconds`, and of the
-//            class `knot` if one is asked for; looked at every quarter of a second
+//            classes of `knot` if any is asked for; looked at every quarter of a second
 //   stitch   whole stitches at the places, and in the turn, that a technique asks for (training/stitch_order.h)
 //   cut      the thread is cut on either side of the first so many ways
 // Events: goal-done, stitch-out-of-turn. Test: needle_watch_test.
@@ -35,6 +35,7 @@ struct NeedleReport {
   double thickness = 0.0;                // [m]
   double peak_force = 0.0;               // [N], largest pull on the tissue
   std::vector<Stitch> stitches;
+  std::vector<double> spacings;          // [m], between neighbours
   std::vector<Lapse> lapses;
   std::string rules;                     // title of the rules
   double soundness = 1.0;                // of the weakest element of the tissue at the end: 1 whole, 0 gone
@@ -62,6 +63,7 @@ class NeedleWatch {
   bool met(const NeedleGoal& g, const Observation& o, double dt);
   bool through_eye(const NeedleGoal& g, const TissueObservation& t);
   bool tied(const NeedleGoal& g, const Observation& o);
+  void keep_times(const TissueObservation& t, double time);
   bool held_only_by(const Observation& o, int tool) const;
 
   NeedleTask task_;
@@ -70,7 +72,7 @@ class NeedleWatch {
   TissueObservation tissue_;             // newest passes
   StitchOrder order_;
   BloodWatch blood_;
-  std::vector<double> pass_time_;        // [s], when each came out
+  std::vector<double> pass_time_, tear_time_;  // [s], when each way through the tissue was made, and had torn as far as counts
   int step_ = 0;
   int used_ = 0;                         // ways through the tissue that belong to eyes
   double kept_ = 0.0, time_ = 0.0;       // [s]

@@ -11,7 +11,8 @@
 namespace filum {
 namespace {
 
-const std::vector<std::string> kMeasures = {"leak", "back-walls", "spacing-variation", "bite-widest", "bite-narrowest", "bite-inequality", "lapses"};
+const std::vector<std::string> kMeasures = {"leak", "back-walls", "spacing-variation", "bite-widest", "bite-narrowest", "bite-inequality", "lapses",
+                                            "knots-secure", "slack-most", "too-tight", "tail-longest", "tail-shortest"};
 
 Range range_of(const YamlNode& node, const std::string& key) {
   const std::vector<double> ends = node.quantities(key, "-");
@@ -55,16 +56,32 @@ double variation(const std::vector<double>& gaps) {
   return std::sqrt(square) / mean;
 }
 
-/// The most (or least) of a bite's measure over the stitches that went through both sides.
+/// The most (or least) over the stitches that join both sides; NaN if it is not known of one.
 template <class Value>
 double over_stitches(const NeedleReport& r, bool most, Value value) {
   double found = kNaN;
   for (const Stitch& s : r.stitches) {
-    if (std::isnan(s.bite[1])) continue;
-    const double v = value(s.bite[0], s.bite[1]);
-    found = std::isnan(found) ? v : most ? std::max(found, v) : std::min(found, v);
+    if (!s.joins) continue;
+    const double v = value(s);
+    if (std::isnan(v)) return v;
+    found = most ? std::fmax(found, v) : std::fmin(found, v);
   }
   return found;
+}
+
+double count(const NeedleReport& r, std::string_view lapse) {
+  return static_cast<double>(std::count_if(r.lapses.begin(), r.lapses.end(), [&](const Lapse& l) { return lapse == l.name; }));
+}
+
+/// Share of the stitches that are tied with a knot that holds in nylon: square, surgeon's, three throws.
+double secure_share(const NeedleReport& r) {
+  double whole = 0.0, tied = 0.0;
+  for (const Stitch& s : r.stitches) {
+    if (!s.joins) continue;
+    whole += 1.0;
+    tied += s.knot == "square" || s.knot == "surgeons" || s.knot == "triple" ? 1.0 : 0.0;
+  }
+  return whole > 0.0 ? tied / whole : kNaN;
 }
 
 int points_of(const ScaleCriterion& c, double value) {
@@ -119,12 +136,16 @@ double scale_value(const std::string& measure, const NeedleReport& r) {
   if (!r.has_tissue) return kNaN;
   if (measure == "leak") return r.join && r.join->sound ? 60e6 * r.join->leak : kNaN;
   if (measure == "lapses") return static_cast<double>(r.lapses.size());
-  if (measure == "back-walls")
-    return static_cast<double>(std::count_if(r.lapses.begin(), r.lapses.end(), [](const Lapse& l) { return std::string_view(l.name) == "back-wall"; }));
-  if (measure == "spacing-variation") return variation(spacings_of(r.stitches));
-  if (measure == "bite-widest") return over_stitches(r, true, [](double a, double b) { return std::max(a, b); }) / r.thickness;
-  if (measure == "bite-narrowest") return over_stitches(r, false, [](double a, double b) { return std::min(a, b); }) / r.thickness;
-  if (measure == "bite-inequality") return over_stitches(r, true, [](double a, double b) { return std::abs(a - b) / std::max(a, b); });
+  if (measure == "back-walls") return count(r, "back-wall");
+  if (measure == "too-tight") return count(r, "too-tight");
+  if (measure == "spacing-variation") return variation(r.spacings);
+  if (measure == "bite-widest") return over_stitches(r, true, [](const Stitch& s) { return std::max(s.bite[0], s.bite[1]); }) / r.thickness;
+  if (measure == "bite-narrowest") return over_stitches(r, false, [](const Stitch& s) { return std::min(s.bite[0], s.bite[1]); }) / r.thickness;
+  if (measure == "bite-inequality") return over_stitches(r, true, [](const Stitch& s) { return std::abs(s.bite[0] - s.bite[1]) / std::max(s.bite[0], s.bite[1]); });
+  if (measure == "knots-secure") return secure_share(r);
+  if (measure == "slack-most") return 1e3 * over_stitches(r, true, [](const Stitch& s) { return s.slack; });
+  if (measure == "tail-longest") return 1e3 * over_stitches(r, true, [](const Stitch& s) { return s.tail; });
+  if (measure == "tail-shortest") return 1e3 * over_stitches(r, false, [](const Stitch& s) { return s.short_tail; });
   return kNaN;
 }
 

@@ -39,7 +39,7 @@ struct ScaleEstimate {
   std::string unit = "-", why;
 };
 
-/// Leak in ml/min, lengths in wall thicknesses; NaN where there was nothing to measure.
+/// Leak in ml/min, bites in wall thicknesses, slack and ends in mm; NaN where there was nothing to measure.
 double scale_value(const std::string& measure, const NeedleReport& report);
 /// One for each item.
 std::vector<ScaleEstimate> estimates(const RatingScale& scale, const NeedleReport& report);

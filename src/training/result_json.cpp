@@ -207,9 +207,9 @@ void add_needle(const NeedleReport& n, Json& json) {
   if (!n.has_tissue) return;
   json["stitches"] = Json::array();
   for (const Stitch& s : n.stitches) json["stitches"].push_back(stitch_json(s, n.thickness));
-  json["spacings_m"] = finite(spacings_of(n.stitches));
+  json["spacings_m"] = finite(n.spacings);
   json["lapses"] = Json::array();
-  for (const Lapse& l : n.lapses) json["lapses"].push_back({{"name", l.name}, {"stitch", l.stitch}, {"time", finite(l.time)}, {"value", finite(l.value)}, {"unit", l.unit}});
+  for (const Lapse& l : n.lapses) json["lapses"].push_back({{"name", l.name}, {"stitch", l.stitch}, {"time", finite(l.time)}, {"value", finite(l.value)}, {"unit", l.unit}, {"critical", l.critical}});
   json["lapse_rules"] = n.rules;
   if (n.scale) json["scale"] = scale_json(*n.scale, n);
   json["tissue_soundness"] = finite(n.soundness);

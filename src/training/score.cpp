@@ -206,12 +206,27 @@ ScoreItem score_item(const Task& task, const RubricItem& rule, const Result& r) 
   return item;
 }
 
+/// Critical lapses, and what the join had to be.
+void judge_join(const NeedleTask& task, Result& r) {
+  const auto fail = [&r](const std::string& reason) { r.verdict.push_back(reason); };
+  for (const Lapse& l : r.needle->lapses)
+    if (l.critical) fail((l.stitch < 0 ? std::string() : "stitch " + std::to_string(l.stitch + 1) + ": ") + l.name + ", a critical failure");
+  const JoinGate& gate = task.join;
+  if (gate.source.empty()) return;
+  if (!r.needle->join || !r.needle->join->sound) return fail("the join could not be tested under pressure");
+  const JoinReport& join = *r.needle->join;
+  if (join.leak > gate.leak) fail("the join leaks " + shown(join.leak, "ml/min") + ", at most " + shown(gate.leak, "ml/min") + " is asked for");
+  if (join.narrowing > gate.narrowing) fail("the lumen is narrowed by " + shown(100.0 * join.narrowing, "-") + " %, at most " + shown(100.0 * gate.narrowing, "-") + " % is asked for");
+  if (gate.patent && !join.patent) fail("the join is not patent");
+}
+
 void judge(const Task& task, bool broken, Result& r) {
   const auto fail = [&r](const auto& reason) { r.verdict.emplace_back(reason); };
   if (task.demonstration_only) fail("a demonstration does not pass");
   if (!r.finished) fail("not all steps were done");
   if (broken) fail("the thread broke");
   if (r.needle && r.needle->out_of_turn > 0) fail(std::to_string(r.needle->out_of_turn) + " stitches were not made in their turn");
+  if (r.needle && task.needle) judge_join(*task.needle, r);
   if (task.has_knot() && !accepted(task, r.knot.knot_class))
     fail("the knot is a " + r.knot.knot_class + ", not a " + joined(task.accept));
   if (r.knot.knot_class != "unknot" && !r.knot.encloses_post) fail("the knot does not enclose the post");

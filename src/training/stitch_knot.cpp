@@ -5,11 +5,13 @@
 namespace filum {
 namespace {
 
-double cut_tail(const Observation& o, const ThreadPart& piece, const KnotReport& knot) {
-  const double low = length_between(o, piece.first, piece.first + knot.core_begin);
-  const double high = length_between(o, piece.first + knot.core_end, piece.last);
-  if (piece.last == o.n_nodes - 1) return low;
-  return !cut_in_front(o, piece) ? high : std::max(low, high);
+/// The longer and the shorter of the ends that were cut.
+void measure_tails(const Observation& o, const ThreadPart& piece, StitchKnot& k) {
+  const double low = length_between(o, piece.first, piece.first + k.knot.core_begin);
+  const double high = length_between(o, piece.first + k.knot.core_end, piece.last);
+  const bool hangs_on_needle = piece.last == o.n_nodes - 1;
+  k.tail = hangs_on_needle ? low : !cut_in_front(o, piece) ? high : std::max(low, high);
+  k.short_tail = hangs_on_needle ? low : !cut_in_front(o, piece) ? high : std::min(low, high);
 }
 
 }  // namespace
@@ -23,7 +25,7 @@ StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int clos
   if (k.knot.core_begin < 0) return k;
   k.begin = o.arc[static_cast<std::size_t>(piece.first + k.knot.core_begin)];
   k.end = o.arc[static_cast<std::size_t>(piece.first + k.knot.core_end)];
-  k.tail = cut_tail(o, piece, k.knot);
+  measure_tails(o, piece, k);
   return k;
 }
 
@@ -63,6 +65,7 @@ void name_knots(const StitchKnot& knot, const TissueObservation& tissue, std::ve
     s.knot = knot.knot.knot_class;
     s.throws = knot.knot.n_throws;
     s.tail = knot.tail;
+    s.short_tail = knot.short_tail;
     s.slack = knot.loop() - way_round(knot, tissue);
   }
 }

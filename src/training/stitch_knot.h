@@ -3,7 +3,7 @@
 // that is tied is a knotted thread whose knot cannot be had without the bites: the shortest part of the thread that holds the whole knot
 // (knot_classifier.h) reaches over both. A knot in a thread beside the stitch ties nothing.
 //   loop  length of that part: thread in bites and knot together; falls to its least when the knot is drawn down on the wall
-//   tail  the longer of the ends that were cut, or the short end if none was
+//   tail  the longer of the ends that were cut, or the short end if none was; short_tail: the shorter
 // Each whole piece of the thread is looked at by itself. Neglects: two knots in one piece (their sum is named, and the stitches within it all
 // have it). Test: stitch_knot_test.
 
@@ -20,7 +20,7 @@ namespace filum {
 struct StitchKnot {
   KnotReport knot;
   double begin = std::numeric_limits<double>::quiet_NaN(), end = begin;  // [m], of the part with the knot, from the thread's short end
-  double tail = begin;                                                   // [m]
+  double tail = begin, short_tail = begin;                               // [m]
   double loop() const { return end - begin; }
   /// The thread at `arc` [m] from the short end lies within the knot's loop.
   bool holds(double arc) const { return arc > begin && arc < end; }

@@ -12,8 +12,6 @@ namespace {
 
 double turn_from(double a, double b) { return std::remainder(b - a, kTurn); }
 
-bool lost(const PassObservation& p) { return p.state == PassObservation::State::pulled_out || p.state == PassObservation::State::torn; }
-
 }  // namespace
 
 StitchOrder::StitchOrder(const std::vector<NeedleGoal>& goals, const TissueDescription& tissue) : goals_(goals), tissue_(tissue), filled_(goals.size(), 0) {
@@ -88,21 +86,15 @@ void StitchOrder::take(const Made& m, double time, std::vector<TaskEvent>& event
 }
 
 void StitchOrder::observe(const Observation& o, std::vector<TaskEvent>& events) {
-  const TissueObservation& t = o.tissue;
-  const auto pass = [&](int k) -> const PassObservation& { return t.passes[static_cast<std::size_t>(k)]; };
-  for (; next_ < t.n_passes; ++next_) {
-    const PassObservation& p = pass(next_);
-    if (lost(p)) continue;
-    if (!p.out || p.state != PassObservation::State::thread) return;
-    if (half_ < 0 || lost(pass(half_)) || pass(half_).side == p.side) {
-      half_ = next_;
-      continue;
-    }
-    Made m{half_, next_, {}, -1};
+  pairs_.observe(o.tissue);
+  for (; taken_ < pairs_.made().size(); ++taken_) {
+    const std::array<int, 2>& pair = pairs_.made()[taken_];
+    Made m{pair[0], pair[1], {}, -1};
     const CutLine cut(tissue_);
-    for (const int k : {half_, next_})
-      m.angle[static_cast<std::size_t>(pass(k).side != 0)] = cut.angle({0.5 * (pass(k).entry_rest + pass(k).exit_rest), pass(k).side});
-    half_ = -1;
+    for (const int k : pair) {
+      const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(k)];
+      m.angle[static_cast<std::size_t>(p.side != 0)] = cut.angle({0.5 * (p.entry_rest + p.exit_rest), p.side});
+    }
     take(m, o.time, events);
   }
 }

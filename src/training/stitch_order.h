@@ -1,7 +1,7 @@
 #pragma once
 // Techniques that ask for stitches in an order: stays at so many degrees from each other, the posterior wall first, a running thread.
 //
-// A stitch is made when thread lies in both its bites. Its place is where each of them is around its own stump or edge (CutLine), at rest, as angles from
+// A stitch is made when thread lies in both its bites (training/stitch_pairs.h). Its place is where each of them is around its own stump or edge (CutLine), at rest, as angles from
 // where the vessel's angle is zero: a stitch that is straight on one stump and 30 degrees off on the other makes a dog-ear and is at neither place.
 // Goals of kind `stitch` are filled one after the other, whatever other goals stand between them. A stitch that the goal whose turn it is
 // does not ask for is out of turn: told once, and kept for a later goal that asks for it, since it cannot be unmade.
@@ -12,6 +12,7 @@
 
 #include "training/needle_task.h"
 #include "training/step_recogniser.h"
+#include "training/stitch_pairs.h"
 #include "world/observation.h"
 
 namespace filum {
@@ -27,6 +28,7 @@ class StitchOrder {
   /// The stitches of this goal run on from the one before them on one thread that is neither cut nor knotted among them. Takes milliseconds.
   bool runs_on(int goal, const Observation& o) const;
   int out_of_turn() const { return out_of_turn_; }
+  const StitchPairs& pairs() const { return pairs_; }
 
  private:
   struct Made {
@@ -44,7 +46,8 @@ class StitchOrder {
   TissueDescription tissue_;
   std::vector<Made> made_;           // as they were made
   std::vector<int> filled_;          // of each goal: stitches that it has
-  int next_ = 0, half_ = -1;         // passes: the next to look at, a bite that waits for the other side
+  StitchPairs pairs_;
+  std::size_t taken_ = 0;            // of the pairs
   int out_of_turn_ = 0;
 };
 

@@ -149,6 +149,7 @@ void parse_needle(const YamlNode& file, const std::string& root, Task& task) {
   needle->has_tissue = file.has("lapses");
   if (needle->has_tissue) needle->lapses = load_lapse_rules(root + "/" + file.text("lapses"));
   if (needle->has_tissue && file.has("scale")) needle->scale = std::make_shared<const RatingScale>(load_rating_scale(root + "/" + file.text("scale")));
+  if (file.has("join")) needle->join = parse_join_gate(file.map("join"));
   for (const YamlNode& node : file.items("steps")) {
     TaskStep step;
     step.throw_number = 0;

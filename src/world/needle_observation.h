@@ -42,7 +42,7 @@ struct PassObservation {
   double bite_entry = 0.0, bite_exit = 0.0;    // [m], distance from the nearest cut edge at rest
   double depth_share = 0.0;               // greatest depth over the thickness there
   double arc = -1.0;                      // [m], thread between its short end and the entry; -1 while the needle is in it
-  double tension = 0.0;                   // [N], of the thread in it
+  double tension = 0.0;                   // [N], pull of the thread in it on the tissue
   double peak_force = 0.0;                // [N], largest pull on the tissue so far
   double hole = 0.0;                      // [m], radius, grown by sawing
   double torn = 0.0;                      // [m], length of the tear towards the edge

@@ -4,6 +4,7 @@
 
 #include "oblique_edges.h"
 #include "training/lapse.h"
+#include "training/stitch_pairs.h"
 #include "training/stitch_guide.h"
 
 namespace filum {
@@ -86,14 +87,16 @@ TEST(CutLine, LapsesOfStitchesEndToSide) {
   add(bite(Vec3(-0.5e-3, 0, -0.1e-3), Vec3(-0.35e-3, 0, -0.1e-3), 0, true));  // then through the far wall of the vessel instead of the stump
   add(bite(Vec3(0, 0, -0.8e-3), Vec3(0, 0, -0.9e-3), 0, false));
   const std::vector<double> times(kMaxPasses, 1.0);
-  const auto stitches = stitches_of(o, times, t);
+  StitchPairs pairs;
+  pairs.observe(o);
+  const auto stitches = stitches_of(o, pairs.made(), times, t);
   ASSERT_EQ(stitches.size(), 5u) << "three whole ones and two halves";
   const CutLine cut(t);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(std::abs(stitches[k].position), cut.radius() * 0.5 * kPi * static_cast<double>(k), 0.02 * cut.radius());
     EXPECT_LT(stitches[k].obliquity, 0.02);
   }
-  const auto spacings = spacings_of({stitches[0], stitches[1]});
+  const auto spacings = spacings_of({stitches[0], stitches[1]}, t, false);
   EXPECT_NEAR(spacings[0], 0.5 * kPi * cut.radius(), 0.02 * cut.radius());
   const LapseRules rules = load_lapse_rules(FILUM_SOURCE_DIR "/curricula/lapses/end-to-side.yaml");
   std::vector<Lapse> found;
@@ -105,7 +108,7 @@ TEST(CutLine, LapsesOfStitchesEndToSide) {
   join.sector_gap.assign(8, 0.0);
   join.sector_gap[1] = join.sector_gap[2] = 0.2e-3;  // on both sides of a quarter of the way round
   found.clear();
-  find_gap_lapses(rules, join, t, {stitches[0], stitches[1]}, 2.0, found);
+  find_gap_lapses(rules, join, t, {stitches[0], stitches[1]}, false, 2.0, found);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_STREQ(found[0].name, "loose-knot");
   EXPECT_EQ(found[0].stitch, 1);

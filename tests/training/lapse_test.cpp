@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <numbers>
 #include <string>
+
+#include "base/error.h"
+#include "training/stitch_pairs.h"
 
 namespace filum {
 namespace lapse_test {
@@ -33,8 +38,15 @@ void add_stitch(TissueObservation& t, double x, double bite_in, double bite_out,
   }
 }
 
-std::vector<Lapse> lapses(const TissueObservation& t) {
-  return lapses_of(LapseRules(), stitches_of(t, std::vector<double>(kMaxPasses, 1.0), card()), kThickness);
+std::vector<Stitch> stitches_in(const TissueObservation& t, const TissueDescription& scene, const std::vector<double>& times = {}) {
+  StitchPairs pairs;
+  pairs.observe(t);
+  return stitches_of(t, pairs.with_needle(t), times, scene);
+}
+
+std::vector<Lapse> lapses(const TissueObservation& t, const TissueDescription& scene = card(), bool complete = false) {
+  const auto stitches = stitches_in(t, scene, std::vector<double>(kMaxPasses, 1.0));
+  return lapses_of(LapseRules(), stitches, spacings_of(stitches, scene, complete), kThickness, 9.0);
 }
 bool has(const std::vector<Lapse>& list, const std::string& name) {
   return std::any_of(list.begin(), list.end(), [&](const Lapse& l) { return name == l.name; });
@@ -48,13 +60,13 @@ TissueObservation good() {
 
 TEST(Lapse, GoodStitchesHaveNone) {
   EXPECT_TRUE(lapses(good()).empty());
-  const auto s = stitches_of(good(), {}, card());
+  const auto s = stitches_in(good(), card());
   ASSERT_EQ(s.size(), 4u);
   EXPECT_NEAR(s[1].bite[0], 0.3e-3, 1e-12);
   EXPECT_NEAR(s[1].bite[1], 0.3e-3, 1e-12);
   EXPECT_NEAR(s[1].position, 0.4e-3, 1e-12);
   EXPECT_NEAR(s[1].obliquity, 0.0, 1e-9);
-  for (const double gap : spacings_of(s)) EXPECT_NEAR(gap, 0.4e-3, 1e-12);
+  for (const double gap : spacings_of(s, card(), true)) EXPECT_NEAR(gap, 0.4e-3, 1e-12);
 }
 
 TEST(Lapse, EachPlantedFaultIsFoundAndNothingElse) {
@@ -82,7 +94,7 @@ TEST(Lapse, HalfAStitchHasOneBite) {
   TissueObservation t;
   add_stitch(t, 0.0, 0.3e-3, 0.3e-3);
   t.n_passes = 1;
-  const auto s = stitches_of(t, {2.5}, card());
+  const auto s = stitches_in(t, card(), {2.5});
   ASSERT_EQ(s.size(), 1u);
   EXPECT_TRUE(std::isnan(s[0].bite[1]));
   EXPECT_EQ(s[0].time, 2.5);
@@ -132,8 +144,8 @@ std::vector<Lapse> tube_lapses(const std::vector<PassObservation>& bites) {
   TissueObservation t;
   for (const PassObservation& p : bites) t.passes[static_cast<std::size_t>(t.n_passes++)] = p;
   const std::vector<double> times(kMaxPasses, 2.0);
-  const auto stitches = stitches_of(t, times, tube());
-  auto found = lapses_of(LapseRules(), stitches, kThickness);
+  const auto stitches = stitches_in(t, tube(), times);
+  auto found = lapses_of(LapseRules(), stitches, spacings_of(stitches, tube(), false), kThickness, 2.0);
   find_back_walls(LapseRules(), t, times, tube(), stitches, found);
   return found;
 }
@@ -144,7 +156,7 @@ TEST(Lapse, StitchesOfATubeAreMeasuredAroundIt) {
     t.passes[static_cast<std::size_t>(t.n_passes++)] = bite(0, angle, -0.3e-3, true);
     t.passes[static_cast<std::size_t>(t.n_passes++)] = bite(1, angle + 0.3, 0.3e-3, false);
   }
-  const auto s = stitches_of(t, {}, tube());
+  const auto s = stitches_in(t, tube());
   ASSERT_EQ(s.size(), 2u);
   EXPECT_NEAR(s[0].position, kRadius * 0.45, 1e-9);
   for (const Stitch& k : s) EXPECT_NEAR(k.obliquity, std::atan2(0.3 * kRadius, 0.6e-3), 1e-9);
@@ -192,7 +204,7 @@ TEST(Lapse, ThreadLeftTooTightForItsBite) {
 }
 
 /// Stitches at 45 and 135 degrees (sectors 1 and 3 of eight), then the gaps of the sectors.
-std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 135.0, bool joins = true) {
+std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 135.0, bool joins = true, bool complete = false) {
   LapseRules rules;
   rules.loose_gap = 0.5;
   rules.line_gap = 0.3;
@@ -206,7 +218,7 @@ std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 1
   JoinReport join;
   for (const double g : gaps) join.sector_gap.push_back(g * kThickness);
   std::vector<Lapse> found;
-  find_gap_lapses(rules, join, scene, stitches, 3.0, found);
+  find_gap_lapses(rules, join, scene, stitches, complete, 3.0, found);
   return found;
 }
 
@@ -221,6 +233,7 @@ TEST(Lapse, GapsAtStitchesAndBetweenThem) {
   EXPECT_STREQ(line[0].name, "disrupted-line");
   EXPECT_NEAR(line[0].value, 0.4, 1e-12);
   EXPECT_TRUE(gap_lapses({2, 0, 0.4, 0, 0, 2, 2, 2}, 180.0).empty()) << "too far apart to be neighbours";
+  EXPECT_EQ(gap_lapses({0.1, 0, 0.4, 0, 0, 0.1, 0.1, 0.1}, 180.0, true, true).size(), 1u) << "unless no more stitches are to come";
   const auto seam = gap_lapses({0.4, 0, 2, 2, 2, 2, 2, 0}, 315.0);
   ASSERT_EQ(seam.size(), 1u) << "over the seam of the angle";
   EXPECT_STREQ(seam[0].name, "disrupted-line");
@@ -234,15 +247,103 @@ TEST(Lapse, GapsAreNoFaultOfBitesThatJoinNothing) {
 
 TEST(Lapse, OnlyThreadThroughBothSidesJoins) {
   auto t = good();
-  t.passes[3].state = PassObservation::State::torn;
-  t.passes[4].state = PassObservation::State::needle;
-  t.n_passes = 7;
-  const auto s = stitches_of(t, {}, card());
-  ASSERT_EQ(s.size(), 4u);
+  t.passes[5].state = PassObservation::State::needle;
+  t.n_passes = 6;
+  StitchPairs pairs;
+  pairs.observe(t);
+  t.passes[3].state = PassObservation::State::torn;  // after the stitch was made
+  const auto s = stitches_of(t, pairs.with_needle(t), {}, card());
+  ASSERT_EQ(s.size(), 3u);
   EXPECT_TRUE(s[0].joins);
   EXPECT_FALSE(s[1].joins) << "one side torn out";
+  EXPECT_TRUE(s[1].lost);
   EXPECT_FALSE(s[2].joins) << "the needle is still in it";
-  EXPECT_FALSE(s[3].joins) << "a lone pass";
+}
+
+TEST(Lapse, OfWhatWasPulledOutOnlyATearIsLeft) {
+  auto t = good();
+  add_stitch(t, 1.6e-3, 0.9e-3, 0.3e-3);
+  EXPECT_TRUE(has(lapses(t), "wide-bite"));
+  t.passes[8].state = t.passes[9].state = PassObservation::State::pulled_out;
+  EXPECT_TRUE(lapses(t).empty()) << "it was taken back";
+  t.passes[8].state = PassObservation::State::torn;
+  t.passes[8].torn = 0.2e-3;
+  const auto found = lapses(t);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_STREQ(found[0].name, "wall-tear");
+}
+
+TissueObservation round_the_tube(const std::vector<double>& degrees, double skew = 0.0) {
+  TissueObservation t;
+  for (const double d : degrees) {
+    const double a = d * std::numbers::pi / 180.0;
+    t.passes[static_cast<std::size_t>(t.n_passes++)] = bite(0, a, -0.3e-3, true);
+    t.passes[static_cast<std::size_t>(t.n_passes++)] = bite(1, a + skew, 0.3e-3, false);
+  }
+  return t;
+}
+
+TEST(Lapse, SpacingRoundATubeHangsOnNoSeam) {
+  const double quarter = 0.5 * std::numbers::pi * kRadius;
+  for (const double from : {0.0, 40.0, 100.0, 179.0, 300.0}) {
+    std::vector<double> seven, eight;
+    for (int k = 0; k < 8; ++k) {
+      eight.push_back(from + 45.0 * k);
+      if (k < 7) seven.push_back(from + 45.0 * k);
+    }
+    EXPECT_FALSE(has(lapses(round_the_tube(eight), tube(), true), "unequal-spacing")) << from;
+    EXPECT_FALSE(has(lapses(round_the_tube(seven), tube(), false), "unequal-spacing")) << from << ": the eighth is still to come";
+    EXPECT_TRUE(has(lapses(round_the_tube(seven), tube(), true), "unequal-spacing")) << from << ": one is missing";
+    const auto open = spacings_of(stitches_in(round_the_tube(seven), tube()), tube(), false), closed = spacings_of(stitches_in(round_the_tube(seven), tube()), tube(), true);
+    EXPECT_EQ(open.size(), 6u);
+    ASSERT_EQ(closed.size(), 7u);
+    EXPECT_NEAR(*std::max_element(closed.begin(), closed.end()), quarter, 1e-12) << from;
+  }
+}
+
+TEST(Lapse, TheOpenClampIsNoPartOfABite) {
+  TissueDescription apart = tube();
+  TissueObservation t = round_the_tube({45.0}, 0.6);  // 0.3 mm along a circle of 0.5 mm
+  for (PassObservation* p : {&t.passes[0], &t.passes[1]}) {
+    const double shift = p->side == 0 ? -0.3e-3 : 0.3e-3;  // stumps laid down 0.6 mm apart
+    p->entry_rest.y() += shift;
+    p->exit_rest.y() += shift;
+  }
+  const auto s = stitches_in(t, apart);
+  ASSERT_EQ(s.size(), 1u);
+  EXPECT_NEAR(s[0].obliquity, std::atan2(0.6 * kRadius, 0.6e-3), 1e-9) << "bites of 0.3 mm on either side";
+  EXPECT_TRUE(has(lapses(t, apart), "oblique"));
+}
+
+TEST(Lapse, ALapseIsShownWhenItCanBeSeen) {
+  auto t = good();
+  t.passes[2].torn = 50e-6;
+  auto stitches = stitches_in(t, card(), std::vector<double>(kMaxPasses, 1.0));
+  stitches[1].tear_time = 4.0;
+  stitches[2].slack = 3e-3;
+  LapseRules rules;
+  rules.slack = 2.5e-3;
+  const auto found = lapses_of(rules, stitches, {}, kThickness, 9.0);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_STREQ(found[0].name, "wall-tear");
+  EXPECT_EQ(found[0].time, 4.0) << "when it tore, not when the needle came out";
+  EXPECT_STREQ(found[1].name, "loose-knot");
+  EXPECT_EQ(found[1].time, 9.0) << "a knot is looked at at the end";
+}
+
+TEST(Lapse, TheRulesSayWhatIsCritical) {
+  for (const char* name : {"vessel", "anastomosis", "vein", "end-to-side", "continuous"}) {
+    const LapseRules rules = load_lapse_rules(std::string(FILUM_SOURCE_DIR) + "/curricula/lapses/" + name + ".yaml");
+    std::vector<Lapse> found = {{"wide-bite", 0, 1.0, 4.0, "thicknesses"}, {"back-wall", 1, 2.0, 170.0, "deg"}};
+    mark_critical(rules, found);
+    EXPECT_FALSE(found[0].critical) << name;
+    EXPECT_TRUE(found[1].critical) << name;
+  }
+  const std::string text = "format: filum-lapses/1\ntitle: T\nsource: S\noblique: 20 deg\nwide_bite_thicknesses: 3\nleast_depth_share: 1\nspacing_variation: 0.25\n"
+                           "spacing_ratio: 2\ntear: 20 um\ncritical: [backwall]\n";
+  const std::string path = testing::TempDir() + "lapses_critical.yaml";
+  std::ofstream(path) << text;
+  EXPECT_THROW(load_lapse_rules(path), InputError) << "a lapse that there is not";
 }
 
 TEST(Lapse, AKnotWithSlackIsLooseAndToldOnce) {
@@ -251,11 +352,11 @@ TEST(Lapse, AKnotWithSlackIsLooseAndToldOnce) {
   s.joins = true;
   s.depth = 1.0;
   s.slack = 1.9e-3;
-  EXPECT_TRUE(lapses_of(rules, {s}, kThickness).empty()) << "not asked for";
+  EXPECT_TRUE(lapses_of(rules, {s}, {}, kThickness, 9.0).empty()) << "not asked for";
   rules.slack = 2e-3;
-  EXPECT_TRUE(lapses_of(rules, {s}, kThickness).empty());
+  EXPECT_TRUE(lapses_of(rules, {s}, {}, kThickness, 9.0).empty());
   s.slack = 2.1e-3;
-  auto found = lapses_of(rules, {s}, kThickness);
+  auto found = lapses_of(rules, {s}, {}, kThickness, 9.0);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_STREQ(found[0].name, "loose-knot");
   EXPECT_EQ(found[0].value, 2.1e-3);
@@ -264,7 +365,7 @@ TEST(Lapse, AKnotWithSlackIsLooseAndToldOnce) {
   scene.thickness = kThickness;
   JoinReport join;
   join.sector_gap.assign(8, kThickness);
-  find_gap_lapses(rules, join, scene, {s}, 3.0, found);
+  find_gap_lapses(rules, join, scene, {s}, false, 3.0, found);
   EXPECT_EQ(found.size(), 1u) << "its edges stand apart too";
 }
 

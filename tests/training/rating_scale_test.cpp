@@ -19,9 +19,14 @@ NeedleReport good() {
   for (int k = 0; k < 8; ++k) {
     Stitch s;
     s.bite[0] = s.bite[1] = 0.25e-3;
-    s.position = 0.4e-3 * k;
+    s.joins = true;
+    s.knot = "square";
+    s.slack = 1.2e-3;
+    s.tail = 1.1e-3;
+    s.short_tail = 0.9e-3;
     r.stitches.push_back(s);
   }
+  r.spacings.assign(8, 0.4e-3);
   r.join = JoinReport{};
   r.join->leak = 1e-6 / 60.0;
   return r;
@@ -42,32 +47,42 @@ TEST(RatingScale, MarsTenHasItsFiveItemsOfTwoPoints) {
   for (const ScaleItem& item : s.items) EXPECT_EQ(item.words.size(), 3u) << item.name;
 }
 
-TEST(RatingScale, EstimatesWhatGeometryTellsAndLeavesTheRestToTheRater) {
-  EXPECT_EQ(points(good()), (Points{2, 2, 2, std::nullopt, std::nullopt}));
+TEST(RatingScale, EstimatesAllFiveFromGeometryAndTopology) {
+  EXPECT_EQ(points(good()), (Points{2, 2, 2, 2, 2}));
   const auto all = estimates(mars10(), good());
   EXPECT_NEAR(*all[0].value, 1.0, 1e-12);
   EXPECT_EQ(all[0].unit, "ml/min");
-  EXPECT_NE(all[3].why.find("rater"), std::string::npos);
 }
 
 TEST(RatingScale, TheWorstCriterionDecides) {
   NeedleReport r = good();
   r.join->leak = 10e-6 / 60.0;
-  r.stitches[3].position += 0.1e-3;  // spaces 0.5 and 0.3 mm in seven: variation 0.134
+  r.spacings[2] += 0.1e-3;  // 0.5 and 0.3 mm in eight: variation 0.125
+  r.spacings[3] -= 0.1e-3;
   r.stitches[5].bite[1] = 0.15e-3;   // unequal by 0.4
-  EXPECT_EQ(points(r), (Points{1, 1, 1, std::nullopt, std::nullopt}));
+  r.stitches[1].knot = "granny";     // one in eight
+  r.stitches[2].short_tail = 0.2e-3;
+  EXPECT_EQ(points(r), (Points{1, 1, 1, 1, 1}));
   r.lapses.push_back({"back-wall", 2, 1.0, 120.0, "deg"});
-  r.stitches[3].position += 0.2e-3;  // 0.7 and 0.1 mm: 0.40
+  r.spacings[2] += 0.2e-3;  // 0.7 and 0.1 mm: 0.375
+  r.spacings[3] -= 0.2e-3;
   r.stitches[6].bite[0] = 0.45e-3;   // 4.5 thicknesses
-  EXPECT_EQ(points(r), (Points{0, 0, 0, std::nullopt, std::nullopt}));
-  EXPECT_NEAR(*estimates(mars10(), r)[1].value, 0.30 / 0.40 * std::sqrt(2.0 / 7.0), 1e-9);
+  r.stitches[0].slack = 2.6e-3;
+  r.stitches[0].tail = 4e-3;
+  EXPECT_EQ(points(r), (Points{0, 0, 0, 0, 0}));
+  EXPECT_NEAR(*estimates(mars10(), r)[1].value, 0.30 / 0.40 * std::sqrt(2.0 / 8.0), 1e-9);
 }
 
 TEST(RatingScale, WhatCouldNotBeMeasuredIsNotMarked) {
   NeedleReport r = good();
-  r.stitches.resize(2);  // one space has no variation
+  r.stitches.resize(2);
+  r.spacings.resize(1);  // one space has no variation
   r.join.reset();
-  EXPECT_EQ(points(r), (Points{std::nullopt, std::nullopt, 2, std::nullopt, std::nullopt}));
+  r.stitches[1].knot.clear();
+  r.stitches[1].slack = r.stitches[1].tail = r.stitches[1].short_tail = std::nan("");
+  EXPECT_EQ(points(r), (Points{std::nullopt, std::nullopt, 2, std::nullopt, std::nullopt})) << "one is not tied";
+  r.stitches[1].joins = false;
+  EXPECT_EQ(points(r)[3], 2) << "a lone pass is no stitch with a loose knot";
 }
 
 TEST(RatingScale, RefusesAScaleThatSaysTwoThings) {

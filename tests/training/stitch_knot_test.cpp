@@ -150,7 +150,7 @@ TEST(StitchKnot, TyingIsDoneWhenTheKnotHoldsTheBitesAndIsDrawnDown) {
   EXPECT_EQ(watch.step(), 0) << "no knot";
   look(trefoil(0.5e-3, 5e-3, 8e-3), 2.0, true);
   EXPECT_EQ(watch.step(), 0) << "beside the stitch";
-  task.goals[0].knot = "square";
+  task.goals[0].knots = {"square", "granny"};
   NeedleWatch particular(task, {});
   std::swap(watch, particular);
   look(trefoil(0.5e-3, 5e-3, 8e-3), 3.0);
