@@ -95,10 +95,11 @@ std::string model_kind(const std::string& root, const std::string& name) {
   const YamlNode file = YamlNode::load(root + "/models/" + name + ".yaml");
   if (!file.has("format")) return "";
   const std::string format = file.text("format"), before = "filum-";  // filum-KIND/1
+  if (format.starts_with("filum-vessel/") && file.text("kind") == "card") return "card";
   return format.starts_with(before) ? format.substr(before.size(), format.find('/') - before.size()) : "";
 }
 
-bool is_for_tasks(const std::string& kind) { return kind == "suture" || kind == "brain"; }
+bool is_for_tasks(const std::string& kind) { return kind == "suture" || kind == "brain" || kind == "vessel"; }
 
 std::string demonstration_file(const std::string& root, const std::string& task) {
   return root + "/" + task_folder(root, task) + "/demonstration.yaml";

@@ -36,7 +36,7 @@ std::vector<Task> load_tasks(const std::string& root, std::vector<std::string>& 
 /// Names of the model files, "suture/10-0-nylon".
 std::vector<std::string> model_names(const std::string& root);
 
-/// What a model file is, from its format: "suture", "brain" (both for `--model` of tasks that have one), "baseline" (where `filum reconcile`
+/// What a model file is, from its format: "suture", "brain", "vessel" (for `--model` of tasks that have one), "baseline" (where `filum reconcile`
 /// starts; no task takes it), else the part of a scene it describes; "" if it has no format.
 std::string model_kind(const std::string& root, const std::string& name);
 /// Whether `--model` of `filum run` and `train` takes files of this kind.

@@ -164,11 +164,12 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   d.title = scene.text("title");
   const std::string suture = scene.text("suture");
   const std::string suture_file = "models/suture/" + suture + ".yaml";
-  const bool own = model_file.empty() || MeasuredModel::is_one(model_file);
+  const std::string vessel_file = is_vessel(model_file) ? model_file : "";
+  const bool own = model_file.empty() || !vessel_file.empty() || MeasuredModel::is_one(model_file);
   d.suture = own ? suture : std::filesystem::path(model_file).stem().string();
   m->thread = load_suture(own ? root + "/" + suture_file : model_file, m->contact);
   m->sources.push_back(own ? suture_file : model_file);
-  if (own && !model_file.empty()) {
+  if (own && !model_file.empty() && vessel_file.empty()) {
     MeasuredModel::load(model_file).apply_to_thread(*m);
     m->sources.push_back(model_file);
   }
@@ -193,7 +194,9 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   read_instruments(root, scene, *m);
   d.dt = m->step.dt = scene.quantity("step", "ms", {1e-4, 5e-3});
   if (scene.has("tissue") && !m->needle) scene.refuse("needle", "a needle beside the tissue");
-  if (scene.has("tissue")) read_tissue(root, scene.map("tissue"), *m);
+  if (scene.has("tissue")) read_tissue(root, scene.map("tissue"), vessel_file, *m);
+  if (!vessel_file.empty() && (!m->vessel || !m->vessel->lumen))
+    throw InputError("command line", "--model", vessel_file, "a suture, since the task " + task + " has no vessel");
   read_pellets(scene, *m);
   d.has_field = scene.has("field");
   if (d.has_field) d.field_W = read_point(scene, "field");

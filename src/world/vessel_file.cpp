@@ -1,5 +1,6 @@
 #include "world/vessel_file.h"
 
+#include <filesystem>
 #include <numbers>
 
 #include "world/describe.h"
@@ -132,10 +133,10 @@ void read_side(const YamlNode& node, const TubeShape& stump, VesselModel& v) {
 }
 
 /// Two stumps of a preset in a double clamp, cut edges facing, the bar along y. Where x is least counts as the angle zero.
-void read_stumps(const std::string& root, const YamlNode& node, Model& m, VesselModel& v) {
-  v.name = node.text("preset");
-  const std::string file = "models/vessel/" + v.name + ".yaml";
-  VesselPreset preset = load_vessel(root + "/" + file);
+void read_stumps(const std::string& root, const YamlNode& node, const std::string& instead, Model& m, VesselModel& v) {
+  const std::string named = "models/vessel/" + node.text("preset") + ".yaml", file = instead.empty() ? named : instead;
+  v.name = instead.empty() ? node.text("preset") : std::filesystem::path(instead).stem().string();
+  VesselPreset preset = load_vessel(instead.empty() ? root + "/" + named : instead);
   if (!preset.tube) node.refuse("preset", "a vessel that is a tube");
   m.sources.push_back(file);
   TubeShape& s = preset.shape;
@@ -195,7 +196,11 @@ TrackMaterial load_track(const std::string& path) {
   return m;
 }
 
-void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
+bool is_vessel(const std::string& path) {
+  return !path.empty() && YamlNode::load(path).text_or("format", "").starts_with("filum-vessel/");
+}
+
+void read_tissue(const std::string& root, const YamlNode& node, const std::string& vessel_file, Model& m) {
   auto v = std::make_shared<VesselModel>();
   v->kind = node.choice("kind", {"card", "vessel"});
   v->wall.dt = m.step.dt;
@@ -204,11 +209,12 @@ void read_tissue(const std::string& root, const YamlNode& node, Model& m) {
   if (v->kind == "card")
     read_flaps(node, *v);
   else
-    read_stumps(root, node, m, *v);
+    read_stumps(root, node, vessel_file, m, *v);
   const std::string file = "models/track/" + node.text("track") + ".yaml";
   m.sources.push_back(file);
   v->track = load_track(root + "/" + file);
-  if (v->track.layers.size() != v->layers.size()) node.refuse("track", "as many layers as the tissue has");
+  if (v->track.layers.size() != v->layers.size())
+    node.refuse("track", "as many layers as the tissue has: " + v->name + " has " + std::to_string(v->layers.size()) + ", this track " + std::to_string(v->track.layers.size()));
   describe_tissue(*v, m.description.tissue);
   m.vessel = std::move(v);
 }

@@ -11,7 +11,11 @@ namespace filum {
 
 TrackMaterial load_track(const std::string& path);
 
+/// Whether a model file is a preset of models/vessel (by its format); an empty path is none.
+bool is_vessel(const std::string& path);
+
+/// `vessel_file`: a preset to take instead of the one that the scene names, or empty.
 /// `tissue: { kind: card, ... }` or `{ kind: vessel, preset: human-digital-artery, ... }`. The scene's needle is known. Throws InputError.
-void read_tissue(const std::string& root, const YamlNode& node, Model& m);
+void read_tissue(const std::string& root, const YamlNode& node, const std::string& vessel_file, Model& m);
 
 }  // namespace filum

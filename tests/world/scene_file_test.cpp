@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "world/vessel_model.h"
+#include "world/wall_file.h"
+#include "world/world.h"
 
 namespace filum {
 namespace scene_file_test {
@@ -118,6 +120,32 @@ TEST_F(SceneFile, AnotherSutureTakesThePlaceOfTheScenes) {
   const auto m = load_model(root_.string(), "knot-square", (root_ / "models/suture/8-0-nylon.yaml").string());
   EXPECT_EQ(m->description.suture, "8-0-nylon");
   EXPECT_GT(m->thread.radius, 15e-6);
+}
+
+TEST(SceneVessel, AnotherVesselTakesThePlaceOfTheScenes) {
+  const std::string root = FILUM_SOURCE_DIR, vessels = root + "/models/vessel/";
+  const auto usual = load_model(root, "artery-stitch");
+  for (const char* name : {"rat-femoral-artery", "chicken-artery"}) {
+    const auto model = load_model(root, "artery-stitch", vessels + name + ".yaml");
+    EXPECT_EQ(model->vessel->name, name);
+    EXPECT_EQ(model->description.suture, usual->description.suture);
+    EXPECT_NE(model->vessel->radius, usual->vessel->radius);
+    EXPECT_NEAR(model->vessel->thickness, load_vessel(vessels + name + ".yaml").shape.thickness, 1e-12);
+    World world(model);
+    for (int k = 0; k < 20; ++k) world.step(Inputs{});
+    EXPECT_TRUE(world.state().tissue.wall.x.allFinite()) << name;
+  }
+  const auto refusal = [&](const std::string& task, const std::string& name) {
+    try {
+      load_model(root, task, vessels + name + ".yaml");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_NE(refusal("artery-stitch", "silicone-tube").find("silicone-tube has 1"), std::string::npos) << "its needle track has three layers";
+  EXPECT_NE(refusal("artery-stitch", "latex-card").find("a vessel that is a tube"), std::string::npos);
+  for (const char* task : {"knot-square", "card-stitches"}) EXPECT_NE(refusal(task, "rat-femoral-artery").find("no vessel"), std::string::npos) << task;
 }
 
 TEST_F(SceneFile, UnknownTaskIsRefused) {
