@@ -23,6 +23,7 @@ void list_twist(ProblemList& list);     // twisting and its instabilities
 void list_localized_helix(ProblemList& list);  // a twisted rod that buckles in its middle
 void list_frames(ProblemList& list);    // directors carried along: holonomy, writhe
 void list_friction(ProblemList& list);  // sliding on a plane and round a bar
+void list_wall_capstan(ProblemList& list);  // sliding round a vessel
 void list_knots(ProblemList& list);     // tight knots
 void list_plectoneme(ProblemList& list);  // a twisted rod wound round itself
 void list_passages(ProblemList& list);  // that there are none

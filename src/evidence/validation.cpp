@@ -17,6 +17,7 @@ ProblemList all_problems() {
   list_localized_helix(list);
   list_frames(list);
   list_friction(list);
+  list_wall_capstan(list);
   list_knots(list);
   list_plectoneme(list);
   list_passages(list);

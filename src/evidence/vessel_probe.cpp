@@ -58,7 +58,7 @@ void follow_first_order(ValidationProblem& r, const std::array<double, 3>& coars
   r.got = 2.0 * fine - middle;
   r.order = observed_order(coarse, middle, fine);
   char at_finest[60];
-  std::snprintf(at_finest, sizeof at_finest, " (%.4g on the finest mesh)", fine);
+  std::snprintf(at_finest, sizeof at_finest, " (%.4g at the finest)", fine);
   r.quantity += at_finest;
 }
 

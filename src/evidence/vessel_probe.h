@@ -21,8 +21,8 @@ struct SurfaceStress {
 /// only; the surface bears its own load along the normal, which gives the rest. Linear elements know the stress at a surface to first order.
 SurfaceStress surface_stress(const TubeSlice& slice, const SliceState& state, double pressure);
 
-/// What is known to first order from three meshes, each twice as fine as the one before: followed to no element size from the last two
-/// (Richardson), with the observed order and, in the quantity, the value of the finest mesh.
+/// What is known to first order from three meshes or steps, each twice as fine as the one before: followed to no size from the last two
+/// (Richardson), with the observed order and, in the quantity, the value at the finest.
 void follow_first_order(ValidationProblem& r, const std::array<double, 3>& coarse_to_fine);
 
 }  // namespace filum
