@@ -107,6 +107,7 @@ double worst_radius(const std::vector<SliceState>& states, const CarotidTable& t
 double worst_force(const std::vector<SliceState>& states, const CarotidTable& t) {
   double worst = 0.0;
   for (std::size_t k = 0; k < kPressures.size(); ++k) {
+    if (!states[k].converged) return kNaN;
     const double lumen = kPi * states[k].inner * states[k].inner * kPressures[k];
     const double whole = 1e-3 * t.force[k] + kPi * 1e-6 * t.radius[k] * t.radius[k] * kPressures[k];
     worst = std::max(worst, std::abs((states[k].axial_force - lumen) - 1e-3 * t.force[k]) / std::abs(whole));
@@ -114,32 +115,35 @@ double worst_force(const std::vector<SliceState>& states, const CarotidTable& t)
   return worst;
 }
 
-std::vector<SliceState> carotid(const CarotidTable& t, int around) {
+/// Solved once for radii and forces.
+const std::vector<SliceState>& carotid(const CarotidTable& t) {
+  static std::map<const CarotidTable*, std::vector<SliceState>> solved;
+  const auto found = solved.find(&t);
+  if (found != solved.end()) return found->second;
   TubeSlice s = rabbit_carotid(t.opened);
-  s.around = around;
-  s.through = around / 4;
+  s.around = 24;
+  s.through = 6;
   s.shape.stretch = t.stretch;
-  return inflate(s, {kPressures.begin(), kPressures.end()});
+  return solved.emplace(&t, inflate(s, {kPressures.begin(), kPressures.end()})).first->second;
 }
 
 void list_carotid(ProblemList& list) {
   for (const CarotidTable& t : kCarotid) {
     ValidationProblem p;
     p.name = t.name;
-    p.source = "Rabbit carotid of Holzapfel, Gasser & Ogden 2000, media and adventitia, 0 to 20 kPa; one-dimensional quadrature of its equilibrium";
+    p.source = "Rabbit carotid of Holzapfel, Gasser & Ogden 2000 (constants from memory, not re-read), media and adventitia, 0 to 20 kPa; one-dimensional quadrature of its equilibrium";
     p.quantity = "largest relative error of the inner radius";
     p.note = "no order: the reference has four digits, the error is near them; vessel-hgo-convergence has the order";
     p.tolerance = 0.005;
-    list.push_back({p, [&t](ValidationProblem& r) { r.got = worst_radius(carotid(t, 24), t); }});
-    if (t.stretch != 1.7) continue;
+    list.push_back({p, [&t](ValidationProblem& r) { r.got = worst_radius(carotid(t), t); }});
     p.name = std::string(t.name) + "-force";
     p.quantity = "largest error of the axial force, relative to the whole force of the wall";
     p.tolerance = 0.03;
-    list.push_back({p, [&t](ValidationProblem& r) { r.got = worst_force(carotid(t, 24), t); }});
+    list.push_back({p, [&t](ValidationProblem& r) { r.got = worst_force(carotid(t), t); }});
   }
   ValidationProblem p;
   p.name = "vessel-hgo-convergence";
-  p.source = "The same at stretch 1.7 and 13.33 kPa, opening angle 160 degrees; 8, 16 and 32 elements around";
+  p.source = "The same (constants from memory, not re-read) at stretch 1.7 and 13.33 kPa, opening angle 160 degrees; 8, 16 and 32 elements around";
   p.quantity = "inner radius";
   p.unit = "mm";
   p.expected = 1.2743;
@@ -183,9 +187,10 @@ SliceState closed_ring(int around) {
   return state;
 }
 
-/// What is asked of the closed ring: radii [m], stretch along the axis, stress at its surfaces [Pa].
+/// What is asked of the closed ring: radii [m], stretch along the axis, stress at its surfaces and where its layers meet [Pa].
 struct ClosedRing {
-  double inner = NAN, outer = NAN, stretch = NAN;
+  double inner = NAN, interface = NAN, outer = NAN, stretch = NAN;
+  double around_inner = NAN, around_outer = NAN;  // stretch around its surfaces
   SurfaceStress stress;
 };
 
@@ -199,13 +204,14 @@ const ClosedRing& solved_ring(int around) {
   slice.around = around;
   slice.through = around / 4;
   ClosedRing ring;
-  if (s.converged) ring = {s.inner, s.outer, s.x.row(2).maxCoeff() / slice.shape.length, surface_stress(slice, s, 0.0)};
+  if (s.converged)
+    ring = {s.inner, interface_radius(slice, s), s.outer, s.x.row(2).maxCoeff() / slice.shape.length, surface_stretch(s, true), surface_stretch(s, false), surface_stress(slice, s, 0.0)};
   return solved.emplace(around, ring).first->second;
 }
 
 void list_ring(ProblemList& list) {
   ValidationProblem p;
-  p.source = "Sector of 160 degrees opening angle closed to a ring without pressure or axial force (quadrature); 12, 24 and 48 elements around";
+  p.source = "Rabbit carotid (constants from memory, not re-read): sector of 160 degrees opening angle closed to a ring without pressure or axial force (quadrature); 12, 24 and 48 elements around";
   const auto ring = [&](const char* name, const char* quantity, const char* unit, double expected, double tolerance, double (*of)(const ClosedRing&)) {
     p.name = std::string("vessel-opening-ring-") + name;
     p.quantity = quantity;
@@ -221,11 +227,16 @@ void list_ring(ProblemList& list) {
                     }});
   };
   ring("inner", "inner radius of the closed ring", "mm", 0.72606, 0.004, [](const ClosedRing& r) { return 1e3 * r.inner; });
+  ring("interface", "radius of the closed ring where media and adventitia meet", "mm", 0.98847, 0.004, [](const ClosedRing& r) { return 1e3 * r.interface; });
   ring("outer", "outer radius of the closed ring", "mm", 1.10912, 0.004, [](const ClosedRing& r) { return 1e3 * r.outer; });
   ring("stretch", "stretch along the axis of the closed ring", "1", 1.001686, 0.001, [](const ClosedRing& r) { return r.stretch; });
+  ring("around-inner", "stretch around the inner surface of the closed ring", "1", 0.91392, 0.004, [](const ClosedRing& r) { return r.around_inner; });
+  ring("around-outer", "stretch around the outer surface of the closed ring", "1", 1.09693, 0.004, [](const ClosedRing& r) { return r.around_outer; });
   p.note = "order one: stress at the surface of linear elements";
   ring("stress-inner", "circumferential stress left at the inner surface, followed to no element size", "kPa", -1.0739, 0.01, [](const ClosedRing& r) { return 1e-3 * r.stress.inner; });
   ring("stress-outer", "circumferential stress left at the outer surface, followed to no element size", "kPa", 0.1408, 0.01, [](const ClosedRing& r) { return 1e-3 * r.stress.outer; });
+  ring("stress-media", "circumferential stress left in the media where it meets the adventitia, followed to no element size", "kPa", 1.2901, 0.01, [](const ClosedRing& r) { return 1e-3 * r.stress.media; });
+  ring("stress-adventitia", "circumferential stress left in the adventitia where it meets the media, followed to no element size", "kPa", 0.0647, 0.01, [](const ClosedRing& r) { return 1e-3 * r.stress.adventitia; });
 }
 
 }  // namespace

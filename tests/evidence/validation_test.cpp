@@ -15,7 +15,7 @@ namespace validation_test {
 
 /// Problems that ask several things of one solution are run together, under the name that all of them begin with.
 std::vector<std::string> runs() {
-  const std::vector<std::string> families{"cantilever-self-weight", "cantilever-tip-load", "euler-strut", "localized-helix-long", "localized-helix-short", "momentum", "plectoneme", "vessel-opening-ring", "vessel-hgo-stress-closed", "vessel-hgo-stress-opened"};
+  const std::vector<std::string> families{"cantilever-self-weight", "cantilever-tip-load", "euler-strut", "localized-helix-long", "localized-helix-short", "momentum", "plectoneme", "vessel-hgo-closed", "vessel-hgo-opened", "vessel-opening-ring", "vessel-hgo-stress-closed", "vessel-hgo-stress-opened"};
   std::vector<std::string> names;
   for (const std::string& name : validation_names()) {
     std::string run = name;
