@@ -73,6 +73,10 @@ Balance balance_blood(double source, double upstream, std::span<const EdgeGap> g
   return flows(0.5 * (low + high));
 }
 
+Balance balance_join(const LumenLine& line, std::span<const EdgeGap> gaps, const Circulation& c, const BloodOptions& blood) noexcept {
+  return balance_blood(c.pressure, c.upstream() + line.resistance(0.0, line.join()), gaps, c.downstream() + line.resistance(line.join(), line.length()), c.back, blood);
+}
+
 MilkingNews milk(Milking& m, const LumenLine& line, std::span<const double> closed, bool open, const Circulation& circulation, std::span<const EdgeGap> gaps,
                  const BloodOptions& blood, double dt) noexcept {
   const auto holds = [&](std::int32_t tool) { return tool >= 0 && closed[static_cast<std::size_t>(tool)] >= 0.0; };

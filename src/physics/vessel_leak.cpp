@@ -31,21 +31,6 @@ double distance_to(const VesselMesh& mesh, const Points& x, int part, const Vec3
   return inside ? 0.0 : least;
 }
 
-/// The outer end of the line through the wall that starts at an inner rim node.
-int outer_of(const VesselMesh& mesh, int inner) noexcept {
-  int node = inner;
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const auto& nodes : mesh.elements)
-      for (std::size_t a = 0; a < 4 && !moved; ++a)
-        if (nodes[a] == node) {
-          node = nodes[a + 4];
-          moved = true;
-        }
-  }
-  return node;
-}
-
 struct RingSpan {
   Vec3 middle, area;  // [m], [m2]: vector area
 };
@@ -60,6 +45,20 @@ RingSpan span_of(const std::vector<int>& ring, const Points& x) noexcept {
 }
 
 }  // namespace
+
+int outer_of(const VesselMesh& mesh, int inner) noexcept {
+  int node = inner;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const auto& nodes : mesh.elements)
+      for (std::size_t a = 0; a < 4 && !moved; ++a)
+        if (nodes[a] == node) {
+          node = nodes[a + 4];
+          moved = true;
+        }
+  }
+  return node;
+}
 
 double slit_speed(double gap, double depth, const BloodOptions& o) noexcept {
   if (gap <= o.seal || o.pressure <= 0.0) return 0.0;
@@ -173,19 +172,10 @@ std::vector<LumenRing> lumen_rings(const Passage& way, const Points& x) {
   return rings;
 }
 
-Patency assess_lumen(const std::vector<LumenRing>& rings, double usual_area, const BloodOptions& blood, double most_narrowing) {
-  Patency p;
+double narrowing_of(const std::vector<LumenRing>& rings, double usual_area) noexcept {
   double least = usual_area;
-  for (std::size_t k = 0; k < rings.size(); ++k) {
-    least = std::min(least, rings[k].area);
-    if (k == 0) continue;
-    const double area = 0.5 * (rings[k].area + rings[k - 1].area);
-    p.resistance += 8.0 * std::numbers::pi * blood.viscosity * (rings[k].middle - rings[k - 1].middle).norm() / std::max(area * area, 1e-24);
-  }
-  p.narrowing = 1.0 - least / usual_area;
-  p.flow = blood.pressure / (p.resistance + blood.rest);
-  p.patent = p.narrowing < most_narrowing;
-  return p;
+  for (const LumenRing& r : rings) least = std::min(least, r.area);
+  return 1.0 - least / usual_area;
 }
 
 }  // namespace filum

@@ -1,5 +1,5 @@
 #pragma once
-// What a finished join lets out and lets through, from the geometry of the walls as they are.
+// What a finished join lets out, and how wide its lumen is, from the geometry of the walls as they are.
 //
 //   Leak     Between the cut edges of two stumps stands a gap g (distance from the edge of one to the nearest wall of the other), as deep
 //            as the wall is thick, d. Mean speed v in it: p = rho/2 (v/C)^2 + 12 mu d v / g^2, the orifice law for wide gaps and
@@ -7,8 +7,7 @@
 //            Gaps below `seal` are closed: films and platelets fill them. Sectors are equal shares of the edge's length as first made.
 //   Lumen    Area of each ring of inner nodes (length of its vector area; a ring that runs past an opening in the side is closed by a chord) times the
 //            cosine by which it stood aslant to the way of the blood as first made (bevelled ends); narrowing 1 - least/usual.
-//   Flow     Poiseuille resistances of the rings in series, 8 pi mu L / A^2, beside the rest of the circulation.
-// Neglects: pulsation, clotting, entrance losses of the lumen, the thread's own hole. Test: vessel_leak_test.
+// What goes on through it: vessel_flow.h. Neglects: pulsation, clotting, the thread's own hole. Test: vessel_leak_test.
 
 #include <span>
 #include <vector>
@@ -23,7 +22,6 @@ struct BloodOptions {
   double viscosity = 3.5e-3;   // [Pa s]
   double discharge = 0.6;      // [-], C of a sharp-edged orifice
   double seal = 3e-6;          // [m]
-  double rest = 0.0;           // [Pa s/m3], resistance of the circulation behind and before the vessel
 };
 
 /// Mean speed [m/s] in a slit of this gap and depth [m].
@@ -49,6 +47,9 @@ struct EdgeGap {
   Vec3 place = Vec3::Zero();   // [m], middle of the gap
   double share = 0.0;          // where on the edge (VesselMesh::edge_share)
 };
+
+/// The outer end of the line through the wall that starts at an inner rim node.
+int outer_of(const VesselMesh& mesh, int inner) noexcept;
 
 /// At node `k` of the cut edge of part `a` against the wall of part `b`. Allocates nothing.
 EdgeGap edge_gap(const VesselMesh& mesh, const Points& x, int a, int b, std::size_t k) noexcept;
@@ -77,13 +78,7 @@ struct Passage {
 Passage passage_of(const VesselMesh& mesh);
 std::vector<LumenRing> lumen_rings(const Passage& way, const Points& x);
 
-struct Patency {
-  double narrowing = 0.0;      // [-], 0 open to 1 closed
-  double resistance = 0.0;     // [Pa s/m3], of the vessel
-  double flow = 0.0;           // [m3/s]
-  bool patent = false;
-};
-/// Rings in the order that blood passes them. Patent: narrowed by less than `most_narrowing`.
-Patency assess_lumen(const std::vector<LumenRing>& rings, double usual_area, const BloodOptions& blood, double most_narrowing = 0.5);
+/// Share [-] of the usual area that the narrowest ring lacks: 0 open to 1 closed.
+double narrowing_of(const std::vector<LumenRing>& rings, double usual_area) noexcept;
 
 }  // namespace filum

@@ -16,10 +16,10 @@ struct JoinReport {
   std::vector<double> sector_flow;   // [m3/s], from where the vessel's angle is zero
   std::vector<double> sector_gap;    // [m], mean
   double narrowing = 0.0;            // [-], 0 open to 1 closed
-  double through = 0.0;              // [m3/s]
+  double through = 0.0;              // [m3/s], on beyond the join, in the scene's circulation
   bool patent = false;
   double thread_inside = 0.0;        // [m], in the lumen, beside the stitches
-  double overlap = 0.0;              // of the cut edges past each other, wall thicknesses
+  double overlap = 0.0;              // of the cut edges past each other, or how far one is rolled inward, wall thicknesses
   bool sound = true;                 // the solver had no trouble
 };
 

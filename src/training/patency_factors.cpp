@@ -25,11 +25,11 @@ std::vector<PatencyFactor> patency_factors(const NeedleReport& r) {
   return {lapse_factor(r, "back-wall", "Stitches through the back wall", "Paladino 2023: odds ratio 59 for thrombosis of rat arteries, about 1000 of veins"),
           {"thread-in-lumen", "Thread in the lumen", 1e3 * j.thread_inside, "mm", count(r, "thread-in-lumen") > 0.0, "Anastomosis Lapse Index"},
           {"narrowing", "Narrowing of the lumen", 100.0 * j.narrowing, "%", j.narrowing > kNarrow, "uneven lumens lower patency (Esanu 2026); threshold 25 % [P]"},
-          {"edge-overlap", "Edges past each other", j.overlap, "thicknesses", count(r, "edge-overlap") > 0.0, "Anastomosis Lapse Index: media and adventitia in the stream"},
+          {"edge-overlap", "Edges past each other or rolled inward", j.overlap, "thicknesses", count(r, "edge-overlap") > 0.0, "Anastomosis Lapse Index: media and adventitia in the stream"},
           lapse_factor(r, "wall-tear", "Stitches that tore the wall", "Anastomosis Lapse Index"),
           lapse_factor(r, "too-tight", "Stitches too tight", "tight stitches, necrosis of the media (histology of human vessels)"),
           lapse_factor(r, "partial-thickness", "Stitches without the intima", "Anastomosis Lapse Index"),
-          {"not-patent", "Lumen closed or without flow", j.patent ? 0.0 : 1.0, "-", !j.patent, "lumen's geometry and flow of the clamps-off test"}};
+          {"not-patent", "Lumen closed or without flow", j.patent ? 0.0 : 1.0, "-", !j.patent, "clamps-off test: narrowed by half, or less than half of an open vessel's flow goes on [P]"}};
 }
 
 }  // namespace filum

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string_view>
 
-#include "physics/vessel_leak.h"
+#include "physics/vessel_edge.h"
+#include "physics/vessel_flow.h"
 #include "world/vessel_model.h"
 #include "world/world.h"
 
@@ -31,20 +33,44 @@ struct Stretch {
   double low, high;
 };
 
-/// Thread between the two passes of a stitch (one out of a stump, the next into the other), with some on either side.
-std::vector<Stretch> between_bites(const TrackState& s, double whole) {
+/// Thread that a pass holds; none once it was pulled or torn out.
+std::optional<Stretch> held_by(const NeedleTrack& t, double whole) {
+  if (t.n == 0 || t.ended != 0) return std::nullopt;
+  Stretch s{whole + t.knots[0].strand, whole + t.knots[0].strand};
+  for (int j = 1; j < t.n; ++j) {
+    s.low = std::min(s.low, whole + t.knots[static_cast<std::size_t>(j)].strand);
+    s.high = std::max(s.high, whole + t.knots[static_cast<std::size_t>(j)].strand);
+  }
+  return s;
+}
+
+bool unparted(const RodState& t, const Stretch& s) {
+  double arc = t.arc_start;
+  for (int i = 0; i + 1 < t.n; arc += t.rest_length[i++])
+    if (t.alive[i] == 0 && arc + t.rest_length[i] > s.low && arc < s.high) return false;
+  return true;
+}
+
+/// Thread between the two bites of each stitch, or in a bite alone, with some on either side.
+std::vector<Stretch> between_bites(const TrackState& s, const RodState& thread, double whole) {
   std::vector<Stretch> list;
+  int half = -1;  // part of a bite, the last of the list, that waits for the other side
   for (int k = 0; k < s.n; ++k) {
     const NeedleTrack& t = s.tracks[static_cast<std::size_t>(k)];
-    if (t.n == 0) continue;
-    Stretch own{whole + t.knots[0].strand, whole + t.knots[0].strand};
-    for (int j = 0; j < t.n; ++j) {
-      own.low = std::min(own.low, whole + t.knots[static_cast<std::size_t>(j)].strand);
-      own.high = std::max(own.high, whole + t.knots[static_cast<std::size_t>(j)].strand);
+    const std::optional<Stretch> own = held_by(t, whole);
+    if (!own) continue;
+    if (half >= 0 && half != t.part) {
+      const Stretch both{std::min(list.back().low, own->low), std::max(list.back().high, own->high)};
+      if (unparted(thread, both)) {
+        list.back() = both;
+        half = -1;
+        continue;
+      }
     }
-    if (!list.empty() && k > 0 && s.tracks[static_cast<std::size_t>(k - 1)].part != t.part) list.back() = {std::min(list.back().low, own.low), std::max(list.back().high, own.high)};
-    else list.push_back({own.low - kFree, own.high + kFree});
+    list.push_back(*own);
+    half = t.part;
   }
+  for (Stretch& stretch : list) stretch = {stretch.low - kFree, stretch.high + kFree};
   return list;
 }
 
@@ -86,6 +112,36 @@ bool let_blood_in(World& world, const JoinTestOptions& o) {
   return sound && world.state().tissue.wall.x.allFinite();
 }
 
+void report_leak(const VesselMesh& mesh, const Points& x, const BloodOptions& blood, JoinTestReport& report) {
+  const JoinLeak leak = find_leak(mesh, x, 0, 1, kJoinSectors, blood);
+  for (std::size_t k = 0; k < report.flow.size(); ++k) {
+    report.flow[k] = leak.sectors[k].flow;
+    report.gap[k] = leak.sectors[k].gap;
+  }
+  report.leak = leak.flow;
+  report.area = leak.area;
+}
+
+double narrowing_at_join(const VesselMesh& mesh, const Points& x) {
+  const Passage way = passage_of(mesh);
+  std::vector<LumenRing> rings = lumen_rings(way, x);
+  const auto second = rings.begin() + static_cast<std::ptrdiff_t>(way.second);
+  const double usual = 0.5 * (lumen_area({rings.begin(), second}) + lumen_area({second, rings.end()}));
+  const auto held = static_cast<std::ptrdiff_t>(way.second / 4);  // next to the clamps, which keep a vessel at the width that it had empty
+  rings.erase(rings.end() - held, rings.end());
+  rings.erase(rings.begin(), rings.begin() + held);
+  return narrowing_of(rings, usual);
+}
+
+/// As the trainee sees it with both clamps off (blood_flow.h).
+double flow_onwards(const VesselModel& vessel, const Points& x, const BloodOptions& blood) {
+  LumenLine line(vessel.mesh);
+  line.measure(x, blood.viscosity);
+  std::vector<EdgeGap> gaps;
+  for (std::size_t k = 0; k < vessel.mesh.edge_ring[0].size(); ++k) gaps.push_back(edge_gap(vessel.mesh, x, 0, 1, k));
+  return balance_join(line, gaps, vessel.circulation, blood).on;
+}
+
 /// The scene with a wall that is balanced to its tolerance in every step: what is measured is a rest, and there is no hurry.
 std::shared_ptr<const Model> balanced(const Model& model) {
   auto m = std::make_shared<Model>(model);
@@ -122,7 +178,7 @@ double thread_in_lumen(const Model& model, const State& state) {
   const VesselMesh& mesh = model.vessel->mesh;
   const std::array<std::vector<LumenRing>, 2> rings = {lumen_rings(mesh, state.tissue.wall.x, 0), lumen_rings(mesh, state.tissue.wall.x, 1)};
   const double whole = t.arc_start + t.rest_length.head(t.n - 1).sum();
-  const std::vector<Stretch> free = between_bites(state.tissue.tracks, whole);
+  const std::vector<Stretch> free = between_bites(state.tissue.tracks, t, whole);
   double inside = 0.0, arc = t.arc_start;
   for (int i = 0; i + 1 < t.n; arc += t.rest_length[i++]) {
     if (t.alive[i] == 0) continue;
@@ -138,7 +194,8 @@ JoinTestReport join_test(const Model& model, const State& state, const JoinTestO
   JoinTestReport report;
   const VesselMesh& mesh = model.vessel->mesh;
   report.thread_inside = thread_in_lumen(model, state);
-  report.overlap = edge_overlap(*model.vessel, state.tissue.wall.x);
+  const Points& before = state.tissue.wall.x;
+  report.overlap = std::max({edge_overlap(*model.vessel, before), edge_roll(mesh, before, 0), edge_roll(mesh, before, 1)});
   World world(balanced(model));
   world.restore(state);
   report.sound = let_blood_in(world, o);
@@ -146,24 +203,10 @@ JoinTestReport join_test(const Model& model, const State& state, const JoinTestO
   BloodOptions blood;
   blood.pressure = o.pressure;
   blood.seal = o.seal;
-  const JoinLeak leak = find_leak(mesh, x, 0, 1, kJoinSectors, blood);
-  for (std::size_t k = 0; k < report.flow.size(); ++k) {
-    report.flow[k] = leak.sectors[k].flow;
-    report.gap[k] = leak.sectors[k].gap;
-  }
-  report.leak = leak.flow;
-  report.area = leak.area;
-  const Passage way = passage_of(mesh);
-  std::vector<LumenRing> rings = lumen_rings(way, x);
-  const auto second = rings.begin() + static_cast<std::ptrdiff_t>(way.second);
-  const double usual = 0.5 * (lumen_area({rings.begin(), second}) + lumen_area({second, rings.end()}));
-  const auto held = static_cast<std::ptrdiff_t>(way.second / 4);  // next to the clamps, which keep a vessel at the width that it had empty
-  rings.erase(rings.end() - held, rings.end());
-  rings.erase(rings.begin(), rings.begin() + held);
-  const Patency lumen = assess_lumen(rings, usual, blood);
-  report.narrowing = lumen.narrowing;
-  report.through = lumen.flow;
-  report.patent = lumen.patent;
+  report_leak(mesh, x, blood, report);
+  report.narrowing = narrowing_at_join(mesh, x);
+  report.through = flow_onwards(*model.vessel, x, blood);
+  report.patent = is_patent(report.narrowing, report.through, model.vessel->circulation);
   return report;
 }
 

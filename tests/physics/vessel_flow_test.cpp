@@ -46,6 +46,63 @@ TEST(VesselFlow, BalanceWithoutALeakIsTwoResistancesInARow) {
   EXPECT_NEAR(b.pressure, 13332.0 - 2e10 * b.from, 0.1);
 }
 
+std::vector<EdgeGap> slits(double gap) {
+  std::vector<EdgeGap> gaps(8);
+  for (EdgeGap& g : gaps) g = {gap, 0.1e-3, 2.2e-3 / 8.0, Vec3::Zero()};
+  return gaps;
+}
+
+/// Half of the lumen before the cut, half behind it, all in a row with the circulation.
+TEST(VesselFlow, ATightOpenJoinLetsThroughWhatTheCirculationTakes) {
+  const VesselMesh mesh = stumps();
+  LumenLine line(mesh);
+  const BloodOptions blood;
+  line.measure(mesh.nodes, blood.viscosity);
+  const Circulation c;
+  const double lumen = 8.0 * kPi * blood.viscosity * 6e-3 / (polygon_area() * polygon_area());
+  const Balance b = balance_join(line, {}, c, blood);
+  EXPECT_NEAR(b.on, (c.pressure - c.back) / (c.upstream() + c.downstream() + lumen), 1e-4 * b.on);
+  EXPECT_LT(b.on, c.through) << "5 ml/min, not the 400 that 100 mmHg drive through 6 mm of tube";
+  EXPECT_GT(b.on, 0.95 * c.through);
+  EXPECT_TRUE(is_patent(0.0, b.on, c));
+  EXPECT_FALSE(is_patent(0.5, b.on, c));
+}
+
+/// Viscous slits let out in proportion to the pressure, Q = G p with G = s g^3 / (12 mu d): three resistances that meet in the join.
+TEST(VesselFlow, WhatLeaksDoesNotGoOnAndAJoinThatGapesIsNotPatent) {
+  const VesselMesh mesh = stumps();
+  LumenLine line(mesh);
+  const BloodOptions blood;
+  line.measure(mesh.nodes, blood.viscosity);
+  const Circulation c;
+  const double half = 4.0 * kPi * blood.viscosity * 6e-3 / (polygon_area() * polygon_area()), up = c.upstream() + half, down = c.downstream() + half;
+  const double g = 4e-6, leaks = 2.2e-3 * g * g * g / (12.0 * blood.viscosity * 0.1e-3);
+  const double p = (c.pressure / up + c.back / down) / (1.0 / up + 1.0 / down + leaks);
+  const Balance b = balance_join(line, slits(g), c, blood);
+  EXPECT_NEAR(b.on, (p - c.back) / down, 2e-3 * b.on) << "the orifice's share of the slit's law is 1 %";
+  EXPECT_TRUE(is_patent(0.0, b.on, c));
+  const Balance open = balance_join(line, slits(0.3e-3), c, blood);
+  EXPECT_LT(open.on, 0.0) << "collaterals bleed out of the cut";
+  EXPECT_NEAR(open.on, (open.pressure - c.back) / down, 1e-6 * c.through);
+  EXPECT_FALSE(is_patent(0.0, open.on, c));
+}
+
+/// A millimetre at a twentieth of its area has twice the circulation's resistance.
+TEST(VesselFlow, ALumenAllButClosedTakesTheFlow) {
+  const VesselMesh mesh = stumps();
+  LumenLine line(mesh);
+  const BloodOptions blood;
+  const Circulation c;
+  Points x = mesh.nodes;
+  for (int i = 0; i < x.cols(); ++i)
+    if (std::abs(x(2, i)) < 0.55e-3) x.col(i).head<2>() *= std::sqrt(0.05);
+  line.measure(x, blood.viscosity);
+  const Balance b = balance_join(line, {}, c, blood);
+  EXPECT_NEAR(b.on, (c.pressure - c.back) / (c.upstream() + c.downstream() + line.resistance(0.0, line.length())), 1e-4 * b.on);
+  EXPECT_LT(b.on, 0.5 * c.through);
+  EXPECT_FALSE(is_patent(0.0, b.on, c));
+}
+
 /// One wide gap: Q = C S sqrt(2 p / rho) = (P - p)/R, a quadratic in sqrt(p).
 TEST(VesselFlow, BalanceWithAnOrificeSolvesItsQuadratic) {
   const double R = 2e10, P = 13332.0, ring = 1e-3, gap = 0.2e-3;

@@ -116,7 +116,7 @@ TEST(VesselLeak, PassageLeadsThroughTheOpening) {
   EXPECT_LT(rings[12].area / rings[0].area, 0.95);
 }
 
-TEST(VesselLeak, LumenNarrowingAndPoiseuilleFlow) {
+TEST(VesselLeak, LumenNarrowing) {
   TubeShape shape;
   shape.around = 96;
   const VesselMesh mesh = make_tube(shape);
@@ -124,22 +124,14 @@ TEST(VesselLeak, LumenNarrowingAndPoiseuilleFlow) {
   const auto rings = lumen_rings(mesh, mesh.nodes, 0);
   ASSERT_EQ(rings.size(), 16u);
   for (const LumenRing& r : rings) EXPECT_NEAR(r.area / area, 1.0, 1e-3);
-  const BloodOptions blood;
-  const Patency open = assess_lumen(rings, area, blood);
-  EXPECT_NEAR(open.resistance, 8.0 * blood.viscosity * 3e-3 / (kPi * std::pow(0.35e-3, 4)), 3e-3 * open.resistance);
-  EXPECT_NEAR(open.flow, blood.pressure / open.resistance, 1e-12);
-  EXPECT_TRUE(open.patent);
-  EXPECT_NEAR(open.narrowing, 0.0, 2e-3);
+  EXPECT_NEAR(narrowing_of(rings, area), 0.0, 2e-3);
   Points x = mesh.nodes;
   for (int i = 0; i < x.cols(); ++i)
     if (mesh.slab[static_cast<std::size_t>(i)] == 9) x.col(i).head<2>() *= 0.5;
-  const Patency tight = assess_lumen(lumen_rings(mesh, x, 0), area, blood);
-  EXPECT_NEAR(tight.narrowing, 0.75, 2e-3);
-  EXPECT_FALSE(tight.patent);
-  EXPECT_LT(tight.flow, open.flow);
+  EXPECT_NEAR(narrowing_of(lumen_rings(mesh, x, 0), area), 0.75, 2e-3);
   x = mesh.nodes;
   x.row(1) *= 1e-3;  // collapsed flat
-  EXPECT_GT(assess_lumen(lumen_rings(mesh, x, 0), area, blood).narrowing, 0.99);
+  EXPECT_GT(narrowing_of(lumen_rings(mesh, x, 0), area), 0.99);
 }
 
 }  // namespace vessel_leak_test
