@@ -1,7 +1,7 @@
 import { describe, expect, it, test } from "vitest";
-import type { Blood } from "../../src/viewer/src/messages";
+import type { Blood, TissueShape } from "../../src/viewer/src/messages";
 import { needleGeometry } from "../../src/viewer/src/scene/needle";
-import { fullness, hanging, radiusOf, sharesAlong } from "../../src/viewer/src/scene/vessel";
+import { fullness, hanging, radiusOf, sharesAlong, Shreds } from "../../src/viewer/src/scene/vessel";
 
 test("the drawn wire is the needle of the scene: middle on +x, point on the side of +y, thin at the point", () => {
   const shape = { name: "n", wire_radius: 37.5e-6, bend_radius: 1.6e-3, angle: Math.PI, taper: 0.5e-3 };
@@ -34,5 +34,49 @@ describe("blood at a gap", () => {
     expect([0.2, 0.55, 0.7, 0.9].map((share) => fullness(blood, share))).toEqual([1, 0.5, 0, 0.5]);
     const shares = sharesAlong([0, -2e-3, 0, 0, 0, 5e-4, 0, 3e-3, 0], blood);
     [0, 0.25, 1].forEach((value, k) => expect(shares[k]).toBeCloseTo(value, 6));
+  });
+});
+
+describe("shreds of adventitia", () => {
+  const round = 24, rings = 9, radius = 0.5e-3, middle = [1e-3, 0, 2e-3];
+  /// Two layers of vertices round the axis y, the outer one first; the outer and the inner surface as triangles.
+  function tube(): TissueShape {
+    const rest: number[] = [], triangles: number[] = [];
+    for (const r of [radius, 0.8 * radius])
+      for (let j = 0; j < rings; ++j)
+        for (let i = 0; i < round; ++i) {
+          const angle = (2 * Math.PI * i) / round;
+          rest.push(middle[0] + r * Math.cos(angle), (j - (rings - 1) / 2) * 0.2e-3, middle[2] + r * Math.sin(angle));
+        }
+    for (let layer = 0; layer < 2; ++layer)
+      for (let j = 0; j + 1 < rings; ++j)
+        for (let i = 0; i < round; ++i) {
+          const at = (a: number, b: number) => (layer * rings + b) * round + (a % round), a = at(i, j), b = at(i, j + 1), c = at(i + 1, j), d = at(i + 1, j + 1);
+          triangles.push(...(layer === 0 ? [a, b, c, c, b, d] : [a, c, b, c, d, b]));
+        }
+    return { name: "artery", kind: "vessel", thickness: 0.1e-3, radius, clamp_reach: 1e-3, second: 0, triangles, rest };
+  }
+  const turned = (rest: readonly number[], angle: number) => rest.map((_, k) => {
+    const o = k - (k % 3), x = rest[o] - middle[0], z = rest[o + 2] - middle[2], c = Math.cos(angle), s = Math.sin(angle);
+    return [middle[0] + c * x + s * z, rest[o + 1], middle[2] - s * x + c * z][k % 3];
+  });
+  /// Distances of all points of the strands from the axis [mm].
+  const distances = (shreds: Shreds) => {
+    const at = shreds.lines.geometry.getAttribute("position");
+    return Array.from({ length: at.count }, (_, k) => Math.hypot(at.getX(k) - 1e3 * middle[0], at.getZ(k) - 1e3 * middle[2]));
+  };
+
+  it("stay outside the wall however the clamp is turned", () => {
+    const shape = tube(), shreds = new Shreds(shape);
+    shreds.update(shape.rest);
+    const before = distances(shreds);
+    expect(before.length).toBeGreaterThan(200);
+    for (const angle of [0, Math.PI / 2, Math.PI, 4]) {
+      shreds.update(turned(shape.rest, angle));
+      distances(shreds).forEach((one, k) => {
+        expect(one).toBeCloseTo(before[k], 3);
+        if (k % 4 !== 0) expect(one).toBeGreaterThan(1e3 * radius + 0.02);
+      });
+    }
   });
 });

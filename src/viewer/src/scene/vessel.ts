@@ -74,25 +74,27 @@ class Clamp {
   }
 }
 
-/// Fine strands on the outside near the cut, each fast to a vertex.
-class Shreds {
+/// Fine strands on the outside near the cut, each fast to a vertex and turning with the wall there: its shape is kept in the frame of one triangle of the
+/// outer surface, so that it stays outside when the clamp is turned over.
+export class Shreds {
   readonly lines: THREE.LineSegments;
-  private readonly roots: number[] = [];
-  private readonly offsets: THREE.Vector3[] = [];
+  private readonly roots: [number, number, number][] = []; // vertices of the triangle, the one that holds the strand first
+  private readonly offsets: THREE.Vector3[] = []; // [mm], of the middle and the tip of each, in its triangle's frame
 
   constructor(shape: TissueShape) {
-    const next = random(7), rest = shape.rest, middle = new THREE.Vector3(), p = new THREE.Vector3();
-    for (let k = 0; k < rest.length; k += 3) middle.add(p.fromArray(rest, k));
-    middle.divideScalar(rest.length / 3);
-    for (let k = 0; k < rest.length / 3; ++k) {
-      const out = p.fromArray(rest, 3 * k).sub(middle), along = out.y;
-      out.y = 0;
-      if (out.length() < shape.radius - 0.3 * shape.thickness || Math.abs(along) > 1.1e-3 || next() > 0.75) continue;
-      this.roots.push(k);
-      const outward = out.normalize(), away = Math.sign(along);
-      const first = outward.clone().multiplyScalar(0.03 + 0.06 * next()).add(new THREE.Vector3((next() - 0.5) * 0.14, away * 0.1 * next(), (next() - 0.5) * 0.14));
-      this.offsets.push(first, first.clone().multiplyScalar(1.3).add(new THREE.Vector3((next() - 0.5) * 0.16, -away * 0.14 * next(), (next() - 0.5) * 0.16 - 0.05)));
-    }
+    const next = random(7), outer = outerTriangles(shape), middle = middleOf(shape.rest), outward = new THREE.Vector3(), turn = new THREE.Matrix4();
+    outer.forEach((triangle, k) => {
+      const along = outward.fromArray(shape.rest, 3 * k).sub(middle).y;
+      if (Math.abs(along) > 1.1e-3 || next() > 0.75) return;
+      outward.setY(0).normalize();
+      const away = new THREE.Vector3(0, Math.sign(along), 0), round = new THREE.Vector3().crossVectors(outward, away);
+      const strand = (out: number, sideways: number, back: number) => new THREE.Vector3().addScaledVector(outward, out).addScaledVector(round, sideways).addScaledVector(away, back);
+      const first = strand(0.03 + 0.06 * next(), (next() - 0.5) * 0.14, 0.1 * next());
+      const tip = first.clone().multiplyScalar(1.3).add(strand(0.04 * next(), (next() - 0.5) * 0.16, -0.14 * next()));
+      frameAt(shape.rest, triangle, turn).transpose();
+      this.roots.push(triangle);
+      this.offsets.push(first.applyMatrix4(turn), tip.applyMatrix4(turn));
+    });
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(12 * this.roots.length), 3));
     this.lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: 0xf7e6de, transparent: true, opacity: 0.55 }));
@@ -100,16 +102,43 @@ class Shreds {
   }
 
   update(positions: readonly number[]): void {
-    const place = this.lines.geometry.getAttribute("position") as THREE.BufferAttribute, root = new THREE.Vector3();
-    this.roots.forEach((k, i) => {
-      root.fromArray(positions, 3 * k).multiplyScalar(kMm);
-      const a = this.offsets[2 * i], b = this.offsets[2 * i + 1];
+    const place = this.lines.geometry.getAttribute("position") as THREE.BufferAttribute, root = new THREE.Vector3(), at = new THREE.Vector3(), turn = new THREE.Matrix4();
+    this.roots.forEach((triangle, i) => {
+      root.fromArray(positions, 3 * triangle[0]).multiplyScalar(kMm);
+      frameAt(positions, triangle, turn);
       place.setXYZ(4 * i, root.x, root.y, root.z);
-      for (const j of [1, 2]) place.setXYZ(4 * i + j, root.x + a.x, root.y + a.y, root.z + a.z);
-      place.setXYZ(4 * i + 3, root.x + b.x, root.y + b.y, root.z + b.z);
+      at.copy(this.offsets[2 * i]).applyMatrix4(turn).add(root);
+      for (const j of [1, 2]) place.setXYZ(4 * i + j, at.x, at.y, at.z);
+      at.copy(this.offsets[2 * i + 1]).applyMatrix4(turn).add(root);
+      place.setXYZ(4 * i + 3, at.x, at.y, at.z);
     });
     place.needsUpdate = true;
   }
+}
+
+function middleOf(rest: readonly number[]): THREE.Vector3 {
+  const middle = new THREE.Vector3(), p = new THREE.Vector3();
+  for (let k = 0; k < rest.length; k += 3) middle.add(p.fromArray(rest, k));
+  return middle.divideScalar(rest.length / 3);
+}
+
+/// Of each vertex of the outer surface one triangle that lies in it, the vertex first.
+function outerTriangles(shape: TissueShape): Map<number, [number, number, number]> {
+  const middle = middleOf(shape.rest), { rest, triangles } = shape, found = new Map<number, [number, number, number]>();
+  const outside = (k: number) => Math.hypot(rest[3 * k] - middle.x, rest[3 * k + 2] - middle.z) >= shape.radius - 0.3 * shape.thickness;
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = triangles.slice(t, t + 3);
+    if (![a, b, c].every(outside)) continue;
+    for (const one of [[a, b, c], [b, c, a], [c, a, b]] as [number, number, number][]) if (!found.has(one[0])) found.set(one[0], one);
+  }
+  return found;
+}
+
+/// Axes of a triangle: along its first side, across it in its plane, its normal.
+function frameAt(positions: readonly number[], [a, b, c]: [number, number, number], into: THREE.Matrix4): THREE.Matrix4 {
+  const root = new THREE.Vector3().fromArray(positions, 3 * a), x = new THREE.Vector3().fromArray(positions, 3 * b).sub(root).normalize();
+  const z = new THREE.Vector3().fromArray(positions, 3 * c).sub(root).cross(x).negate().normalize();
+  return into.makeBasis(x, z.clone().cross(x), z);
 }
 
 export class Vessel {
