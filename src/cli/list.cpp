@@ -15,7 +15,9 @@ namespace filum {
 namespace {
 
 // The physical effects that the world is made of, each one header below src/physics; those of reconcile come from its catalogue.
-constexpr const char* kEffects[] = {"elastic_rod", "rod_contact", "friction", "rod_obstacle", "thread_grasp", "instrument", "linear_fem", "spatula_contact", "needle", "needle_track", "rod_tether"};
+constexpr const char* kEffects[] = {"elastic_rod", "rod_contact", "friction", "rod_obstacle", "thread_grasp", "instrument",
+                                    "linear_fem", "spatula_contact", "needle", "needle_track", "rod_tether",
+                                    "vessel_wall", "hyperelastic", "wall_meeting", "vessel_leak", "vessel_flow", "pellet", "tissue_law", "pore_flow"};
 
 std::string kind_of(const std::string& root, const std::string& model, std::vector<std::string>& problems) {
   try {

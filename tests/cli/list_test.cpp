@@ -38,7 +38,9 @@ TEST(List, EveryTaskOnDiskIsListedOnceWithItsTitle) {
   EXPECT_EQ(shown_only, (std::set<std::string>{"knot-granny", "anastomosis-lapses"}));
   EXPECT_TRUE(names_of(d["curricula"]).count("research"));
   EXPECT_EQ(names_of(d["rigs"]), (std::set<std::string>{"tissue-block", "spatula-press", "vessel-inflation", "suture-cantilever", "suture-pull", "needle-insertion", "forceps-bridge", "tip-hold"}));
-  for (const char* effect : {"viscoelastic-relaxation", "mains-hum", "elastic_rod", "needle_track"}) EXPECT_TRUE(names_of(d["effects"]).count(effect)) << effect;
+  for (const char* effect : {"viscoelastic-relaxation", "mains-hum", "elastic_rod", "needle_track", "vessel_wall", "wall_meeting", "vessel_leak", "vessel_flow", "pellet"}) EXPECT_TRUE(names_of(d["effects"]).count(effect)) << effect;
+  for (const std::string& effect : names_of(d["effects"]))
+    if (effect.find('_') != std::string::npos) { EXPECT_TRUE(fs::exists(fs::path(FILUM_SOURCE_DIR) / "src/physics" / (effect + ".h"))) << effect; }
   for (const auto& model : d["models"]) EXPECT_TRUE(fs::exists(fs::path(FILUM_SOURCE_DIR) / "models" / (model.get<std::string>() + ".yaml"))) << model;
 }
 
