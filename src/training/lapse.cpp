@@ -13,7 +13,14 @@
 namespace filum {
 namespace {
 
-Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut, bool stumps) {
+std::vector<std::string> layers_of(const PassObservation& p, const TissueDescription& scene) {
+  std::vector<std::string> names;
+  for (const TissueLayer& l : scene.layers)
+    if (std::min(p.deep, l.to) - std::max(p.shallow, l.from) > 1e-6) names.push_back(l.name);
+  return names;
+}
+
+Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut, const TissueDescription& scene) {
   const PassObservation& p = t.passes[static_cast<std::size_t>(a)];
   const PassObservation& q = t.passes[static_cast<std::size_t>(b < 0 ? a : b)];
   Stitch s;
@@ -26,6 +33,7 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut,
   s.exit_angle = q.exit_angle;
   const CutPlace in{p.entry_rest, p.side}, out{q.exit_rest, q.side};
   // Two stumps lie apart in the open clamp, and that space is no part of a bite.
+  const bool stumps = scene.lumen && scene.edges[0].rim.empty();
   const double across = stumps && whole ? s.bite[0] + s.bite[1] : cut.across(in, out);
   s.obliquity = std::atan2(std::abs(cut.along(in, out)), across);
   s.depth = std::min(p.depth_share, q.depth_share);
@@ -35,6 +43,10 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut,
   s.torn = std::max(p.torn, q.torn);
   s.lost = is_lost(p) || is_lost(q);
   s.joins = whole && p.state == PassObservation::State::thread && q.state == PassObservation::State::thread;
+  if (b >= 0 || !whole) s.inner[0] = std::abs(p.bite_exit);
+  if (b >= 0) s.inner[1] = std::abs(q.bite_entry);
+  s.around = scene.lumen ? kTurn * cut.radius() : 0.0;
+  s.layers = layers_of(p.depth_share <= q.depth_share ? p : q, scene);
   return s;
 }
 
@@ -75,13 +87,12 @@ LapseRules load_lapse_rules(const std::string& path) {
 std::vector<Stitch> stitches_of(const TissueObservation& t, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
                                 const TissueDescription& scene) {
   const CutLine cut(scene);
-  const bool stumps = scene.lumen && scene.edges[0].rim.empty();
   std::vector<Stitch> stitches;
   for (int k = 0; k < t.n_passes; ++k) {
     if (!t.passes[static_cast<std::size_t>(k)].out) continue;
     if (std::any_of(pairs.begin(), pairs.end(), [k](const auto& pair) { return pair[1] == k; })) continue;
     const auto pair = std::find_if(pairs.begin(), pairs.end(), [k](const auto& one) { return one[0] == k; });
-    stitches.push_back(from_passes(t, k, pair == pairs.end() ? -1 : (*pair)[1], cut, stumps));
+    stitches.push_back(from_passes(t, k, pair == pairs.end() ? -1 : (*pair)[1], cut, scene));
     const auto last = static_cast<std::size_t>(std::max(k, stitches.back().second));
     if (last < pass_time.size()) stitches.back().time = pass_time[last];
   }

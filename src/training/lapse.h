@@ -54,6 +54,9 @@ struct Stitch {
   double slack = std::numeric_limits<double>::quiet_NaN();  // [m], thread in its knot and loop beyond the shortest way round the bites that the loop holds
   bool joins = false;             // thread is in both sides of the cut: not a lone pass, not torn out
   bool lost = false;              // torn or pulled out on one side at least
+  double inner[2] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};  // [m], as bite: where the needle left the first side and came into the second
+  double around = 0.0;            // [m], length of a cut that is closed; 0: it has ends
+  std::vector<std::string> layers;  // that were gone into on the side with the lesser depth, outermost first
 };
 
 struct Lapse {

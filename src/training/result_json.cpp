@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "training/patency_factors.h"
 #include "training/pressure_map.h"
@@ -117,17 +119,36 @@ Json pressure_json(const PressureReport& p) {
           {"limits", {{"title", p.limits.title}, {"version", p.limits.version}, {"label", p.limits.label}, {"source", p.limits.source}}}};
 }
 
-Json stitch_json(const Stitch& s, double thickness) {
+/// [m], from each stitch to the next along the cut, round a vessel from the last to the first; NaN where there is none.
+std::vector<double> next_spacings(const std::vector<Stitch>& stitches) {
+  std::vector<double> next(stitches.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<std::size_t> order(stitches.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return stitches[a].position < stitches[b].position; });
+  for (std::size_t k = 0; k < order.size() && order.size() > 1; ++k) {
+    const Stitch& s = stitches[order[k]];
+    if (k + 1 < order.size())
+      next[order[k]] = stitches[order[k + 1]].position - s.position;
+    else if (s.around > 0.0)
+      next[order[k]] = stitches[order[0]].position + s.around - s.position;
+  }
+  return next;
+}
+
+Json stitch_json(const Stitch& s, double spacing, double thickness) {
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
   return {{"time", finite(s.time)},
           {"passes", {s.first, s.second}},
           {"bite_m", {finite(s.bite[0]), finite(s.bite[1])}},
+          {"bites_inner_m", {finite(s.inner[0]), finite(s.inner[1])}},
           {"bite_thicknesses", {finite(s.bite[0] / thickness), finite(s.bite[1] / thickness)}},
           {"entry_angle_deg", finite(kDegrees * s.entry_angle)},
           {"exit_angle_deg", finite(kDegrees * s.exit_angle)},
           {"obliquity_deg", finite(kDegrees * s.obliquity)},
           {"depth_share", finite(s.depth)},
+          {"depth_layers", s.layers},
           {"position_m", finite(s.position)},
+          {"spacing_m", finite(spacing)},
           {"tension_n", finite(s.tension)},
           {"peak_force_n", finite(s.peak_force)},
           {"torn_m", finite(s.torn)},
@@ -206,7 +227,8 @@ void add_needle(const NeedleReport& n, Json& json) {
   if (n.out_of_turn >= 0) json["needle"]["stitches_out_of_turn"] = n.out_of_turn;
   if (!n.has_tissue) return;
   json["stitches"] = Json::array();
-  for (const Stitch& s : n.stitches) json["stitches"].push_back(stitch_json(s, n.thickness));
+  const std::vector<double> next = next_spacings(n.stitches);
+  for (std::size_t k = 0; k < n.stitches.size(); ++k) json["stitches"].push_back(stitch_json(n.stitches[k], next[k], n.thickness));
   json["spacings_m"] = finite(n.spacings);
   json["lapses"] = Json::array();
   for (const Lapse& l : n.lapses) json["lapses"].push_back({{"name", l.name}, {"stitch", l.stitch}, {"time", finite(l.time)}, {"value", finite(l.value)}, {"unit", l.unit}, {"critical", l.critical}});

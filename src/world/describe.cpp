@@ -83,6 +83,12 @@ void describe_tissue(const VesselModel& model, TissueDescription& d) {
   d.name = model.name;
   d.kind = model.kind;
   d.thickness = model.thickness;
+  double deep = 0.0;
+  for (auto l = model.layers.rbegin(); l != model.layers.rend(); ++l) {
+    const double from = deep;
+    deep += l->thickness / model.thickness;
+    d.layers.push_back({l->name, from, deep});
+  }
   d.cut_along = model.cut_along;
   d.lumen = model.lumen;
   d.axis = model.clamp.X_WB.q * Vec3::UnitZ();

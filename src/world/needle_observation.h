@@ -41,6 +41,7 @@ struct PassObservation {
   double entry_angle = 0.0, exit_angle = 0.0;  // [rad], of the needle against the surface
   double bite_entry = 0.0, bite_exit = 0.0;    // [m], distance from the nearest cut edge at rest
   double depth_share = 0.0;               // greatest depth over the thickness there
+  double shallow = 1.0, deep = 0.0;       // least and greatest depth, shares of the wall from outside
   double arc = -1.0;                      // [m], thread between its short end and the entry; -1 while the needle is in it
   double tension = 0.0;                   // [N], pull of the thread in it on the tissue
   double peak_force = 0.0;                // [N], largest pull on the tissue so far
@@ -86,9 +87,16 @@ struct CutEdge {
   Vec3 axis = Vec3::UnitY(), origin = Vec3::Zero();  // unit, [m], of its own vessel
 };
 
+/// A layer of the wall between two depths, shares of its thickness from outside.
+struct TissueLayer {
+  std::string name;
+  double from = 0.0, to = 1.0;
+};
+
 struct TissueDescription {
   std::string name, kind;                 // "card" | "vessel"
   double thickness = 0.0;                 // [m]
+  std::vector<TissueLayer> layers;        // outermost first
   Vec3 cut_along = Vec3::UnitY();         // unit, direction of the cut at rest; of a vessel: where its angle is zero
   bool lumen = false;                     // two vessels: the cut runs round an axis or, where they are given, along the edges
   int second = 0;                         // end to side: the first vertex of the vessel that is sewn to the other's side; else 0

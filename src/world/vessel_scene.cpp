@@ -178,6 +178,8 @@ void VesselScene::observe(const VesselState& s, const RodState& thread, Observat
       p.bite_exit = track.bite_exit;
     }
     p.depth_share = std::max(0.0, track.deep - track.shallow);
+    p.shallow = track.shallow;
+    p.deep = track.deep;
     p.arc = track.n > 0 && track.knots[0].strand < 0.0 ? whole + track.knots[0].strand : -1.0;
     p.tension = track.pull;
     p.peak_force = track.peak;

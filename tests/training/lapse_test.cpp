@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "base/numbers.h"
 #include "training/stitch_pairs.h"
 
 namespace filum {
@@ -67,6 +68,30 @@ TEST(Lapse, GoodStitchesHaveNone) {
   EXPECT_NEAR(s[1].position, 0.4e-3, 1e-12);
   EXPECT_NEAR(s[1].obliquity, 0.0, 1e-9);
   for (const double gap : spacings_of(s, card(), true)) EXPECT_NEAR(gap, 0.4e-3, 1e-12);
+}
+
+TEST(Lapse, AStitchTellsTheLayersOfItsThinnerSideAndItsInnerBites) {
+  TissueDescription vessel = card();
+  vessel.layers = {{"adventitia", 0.0, 0.35}, {"media", 0.35, 0.93}, {"intima", 0.93, 1.0}};
+  TissueObservation t;
+  add_stitch(t, 0.0, 0.3e-3, 0.25e-3);
+  t.passes[0].bite_exit = 0.28e-3;
+  t.passes[1].bite_entry = 0.2e-3;
+  for (int k = 0; k < 2; ++k) t.passes[static_cast<std::size_t>(k)].shallow = 0.0, t.passes[static_cast<std::size_t>(k)].deep = 1.0;
+  EXPECT_EQ(stitches_in(t, vessel)[0].layers, (std::vector<std::string>{"adventitia", "media", "intima"}));
+  t.passes[1].deep = t.passes[1].depth_share = 0.93;  // the point came as far as the intima, not into it
+  const Stitch s = stitches_in(t, vessel)[0];
+  EXPECT_EQ(s.layers, (std::vector<std::string>{"adventitia", "media"}));
+  EXPECT_NEAR(s.inner[0], 0.28e-3, 1e-12);
+  EXPECT_NEAR(s.inner[1], 0.2e-3, 1e-12);
+  EXPECT_EQ(s.around, 0.0);
+  t.n_passes = 1;
+  const Stitch half = stitches_in(t, vessel)[0];
+  EXPECT_NEAR(half.inner[0], 0.28e-3, 1e-12);
+  EXPECT_TRUE(std::isnan(half.inner[1]));
+  vessel.lumen = true;
+  vessel.radius = 0.5e-3;
+  EXPECT_NEAR(stitches_in(t, vessel)[0].around, kTurn * 0.5e-3, 1e-9);
 }
 
 TEST(Lapse, EachPlantedFaultIsFoundAndNothingElse) {

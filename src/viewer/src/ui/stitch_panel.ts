@@ -22,6 +22,10 @@ export function tails(value: Stitch["tail_mm"]): string {
   return both(Array.isArray(value) ? value : [value], 1);
 }
 
+/// "310 / 290": bites where the needle left the first side and came into the second. Older results do not tell.
+const inner = (stitch: Stitch): string => both((stitch.bites_inner_m ?? [null, null]).map((value) => (value === null ? null : 1e6 * value)), 0);
+const layers = (stitch: Stitch): string => (stitch.depth_layers?.length ? stitch.depth_layers.join(", ") : "–");
+
 export function lapseValue(lapse: Lapse): string {
   if (lapse.value === null) return "";
   if (lapse.unit === "thicknesses") return `${lapse.value.toFixed(1)} wall thicknesses`;
@@ -39,13 +43,13 @@ export function replayAt(id: string, time: number | null, stitch = -1): string {
   return `#/replay/${encodeURIComponent(id)}/${(time ?? 0).toFixed(2)}${stitch >= 0 ? `/stitch-${stitch + 1}` : ""}`;
 }
 
-const kColumns: [string, string][] = [["Stitch", ""], ["Bite", "both sides, wall thicknesses"], ["Entry", "°, of the needle to the surface"], ["Exit", "°, of the needle to the surface"], ["Oblique", "° to the axis"],
-  ["Depth", "% of the wall"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Throws", "of the knot"], ["Knot", ""], ["Tail", "mm, cut ends"], ["Lapses", ""]];
+const kColumns: [string, string][] = [["Stitch", ""], ["Bite", "both sides, wall thicknesses"], ["Inside", "µm, bites where it left and came in"], ["Entry", "°, of the needle to the surface"], ["Exit", "°, of the needle to the surface"], ["Oblique", "° to the axis"],
+  ["Depth", "% of the wall"], ["Layers", "of the thinner side"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Throws", "of the knot"], ["Knot", ""], ["Tail", "mm, cut ends"], ["Lapses", ""]];
 
-function row(stitch: Stitch, k: number, next: number | undefined, lapses: Lapse[], id: string | null): HTMLElement {
+function row(stitch: Stitch, k: number, next: number | null | undefined, lapses: Lapse[], id: string | null): HTMLElement {
   const name = `Stitch ${k + 1}`;
   const found = lapses.length > 0 ? [icon.warn(), " ", lapses.map((one) => words(one.name)).join(", ")] : ["none"];
-  const numbers = [both(stitch.bite_thicknesses, 1), cell(stitch.entry_angle_deg, 1, 0), cell(stitch.exit_angle_deg, 1, 0), cell(stitch.obliquity_deg, 1, 0), cell(stitch.depth_share, 100, 0),
+  const numbers = [both(stitch.bite_thicknesses, 1), inner(stitch), cell(stitch.entry_angle_deg, 1, 0), cell(stitch.exit_angle_deg, 1, 0), cell(stitch.obliquity_deg, 1, 0), cell(stitch.depth_share, 100, 0), layers(stitch),
     cell(next, 1000, 2), cell(stitch.tension_n, 1000, 1), cell(stitch.peak_force_n, 1000, 1), cell(stitch.torn_m, 1e6, 0),
     cell(stitch.throws, 1, 0), stitch.knot ? words(stitch.knot) : "–", tails(stitch.tail_mm)];
   return h("tr", { "data-stitch": k }, h("th", { scope: "row" }, id ? h("a", { href: replayAt(id, stitch.time, k), title: "Show this stitch in the replay" }, name) : name),
@@ -55,7 +59,7 @@ function row(stitch: Stitch, k: number, next: number | undefined, lapses: Lapse[
 /// In the order round the cut, so that "next" is the neighbour.
 function table(result: Result, stitches: readonly Stitch[], id: string | null): HTMLElement {
   const order = stitches.map((stitch, k) => ({ stitch, k })).sort((a, b) => (a.stitch.position_m ?? 0) - (b.stitch.position_m ?? 0));
-  const rows = order.map(({ stitch, k }, at) => row(stitch, k, result.spacings_m?.[at], ofStitch(result.lapses, k), id));
+  const rows = order.map(({ stitch, k }, at) => row(stitch, k, stitch.spacing_m === undefined ? result.spacings_m?.[at] : stitch.spacing_m, ofStitch(result.lapses, k), id));
   return h("table", { class: "stitches" }, h("thead", {}, h("tr", {}, ...kColumns.map(([name, unit]) => h("th", { scope: "col" }, name, unit ? h("span", { class: "unit" }, unit) : null)))), h("tbody", {}, ...rows));
 }
 
@@ -143,8 +147,8 @@ export class StitchList {
     this.buttons.forEach((button, k) => button.setAttribute("aria-pressed", String(k === this.chosen)));
     this.facts.replaceChildren();
     if (one) {
-      const facts: [string, string][] = [["Bites", `${both(one.bite_thicknesses, 1)} wall thicknesses`], ["Entry, exit", `${cell(one.entry_angle_deg, 1, 0)}°, ${cell(one.exit_angle_deg, 1, 0)}°`],
-        ["Oblique", `${cell(one.obliquity_deg, 1, 0)}°`], ["Depth", `${cell(one.depth_share, 100, 0)} % of the wall`], ["Tension left", `${cell(one.tension_n, 1000, 1)} mN`], ["Torn", `${cell(one.torn_m, 1e6, 0)} µm`],
+      const facts: [string, string][] = [["Bites", `${both(one.bite_thicknesses, 1)} wall thicknesses`], ["Inside", `${inner(one)} µm`], ["Entry, exit", `${cell(one.entry_angle_deg, 1, 0)}°, ${cell(one.exit_angle_deg, 1, 0)}°`],
+        ["Oblique", `${cell(one.obliquity_deg, 1, 0)}°`], ["Depth", `${cell(one.depth_share, 100, 0)} % of the wall`], ["Layers", layers(one)], ["Next", `${cell(one.spacing_m, 1000, 2)} mm`], ["Tension left", `${cell(one.tension_n, 1000, 1)} mN`], ["Torn", `${cell(one.torn_m, 1e6, 0)} µm`],
         ["Knot", one.knot ? `${words(one.knot)}, ${cell(one.throws, 1, 0)} throws, tails ${tails(one.tail_mm)} mm` : "–"]];
       const lapses = ofStitch(this.result.lapses, this.chosen);
       this.facts.append(h("h3", {}, `Stitch ${stitch + 1}`), h("dl", { class: "facts" }, ...facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])),
