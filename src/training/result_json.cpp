@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "training/patency_factors.h"
 #include "training/pressure_map.h"
@@ -119,11 +118,12 @@ Json pressure_json(const PressureReport& p) {
           {"limits", {{"title", p.limits.title}, {"version", p.limits.version}, {"label", p.limits.label}, {"source", p.limits.source}}}};
 }
 
-/// [m], from each stitch to the next along the cut, round a vessel from the last to the first; NaN where there is none.
+/// [m], from each stitch that was not lost to the next along the cut, round a vessel from the last to the first; NaN where there is none.
 std::vector<double> next_spacings(const std::vector<Stitch>& stitches) {
   std::vector<double> next(stitches.size(), std::numeric_limits<double>::quiet_NaN());
-  std::vector<std::size_t> order(stitches.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < stitches.size(); ++k)
+    if (!stitches[k].lost) order.push_back(k);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return stitches[a].position < stitches[b].position; });
   for (std::size_t k = 0; k < order.size() && order.size() > 1; ++k) {
     const Stitch& s = stitches[order[k]];

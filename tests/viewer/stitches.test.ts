@@ -8,7 +8,7 @@ import { resultOf } from "./sample_frames.mjs";
 const stitch = (passes: [number, number], position: number, bites: [number, number | null]): Stitch => ({ time: 12.5, passes, bite_m: [3e-4, 3e-4], bite_thicknesses: bites, entry_angle_deg: 80, exit_angle_deg: 70, obliquity_deg: 5,
   depth_share: 1, position_m: position, tension_n: 2e-3, peak_force_n: 9e-3, torn_m: 0 });
 const result = { ...(resultOf("s 1", 30) as unknown as Result), stitches: [stitch([0, 1], 1e-3, [2.4, 2.7]), stitch([2, 3], 0, [4.6, null])], spacings_m: [1e-3],
-  lapses: [{ name: "wide-bite", stitch: 1, time: 20, value: 4.6, unit: "thicknesses" }, { name: "back-wall", stitch: 0, time: 11.25, value: 140, unit: "deg" }], lapse_rules: "Vessel" };
+  lapses: [{ name: "wide-bite", stitch: 1, time: 20, value: 4.6, unit: "thicknesses" }, { name: "back-wall", stitch: 0, time: 11.25, value: 140, unit: "deg", critical: true }], lapse_rules: "Vessel" };
 
 describe("stitches of a result", () => {
   it("stand in order along the cut, each with its bites and lapses and a way to its moment", () => {

@@ -4,7 +4,6 @@ import { h } from "./dom";
 import { quantity, words } from "./format";
 import { icon } from "./pictures";
 
-const kCritical = ["back-wall"];
 const kCompass = 8; // sectors are counted from where the vessel's angle is zero
 
 /// "2.4 / 2.7": both sides of a stitch; a dash where there was no second side.
@@ -66,7 +65,7 @@ function table(result: Result, stitches: readonly Stitch[], id: string | null): 
 function lapseList(lapses: readonly Lapse[], id: string | null): HTMLElement {
   if (lapses.length === 0) return h("p", {}, icon.pass(), " No lapse was found.");
   return h("ul", { class: "lapses" }, ...lapses.map((lapse) => {
-    const critical = kCritical.includes(lapse.name), where = lapse.stitch < 0 ? "the whole line" : `stitch ${lapse.stitch + 1}`;
+    const critical = lapse.critical === true, where = lapse.stitch < 0 ? "the whole line" : `stitch ${lapse.stitch + 1}`;
     const text = [h("strong", {}, words(lapse.name)), critical ? h("span", { class: "tag critical" }, "critical") : null, h("span", {}, `${where}: ${lapseValue(lapse)}`)];
     const time = lapse.time === null ? "" : `${lapse.time.toFixed(1)} s`;
     return h("li", { "data-lapse": lapse.name }, icon.warn(), ...text, id && time ? h("a", { class: "button", href: replayAt(id, lapse.time, lapse.stitch) }, `Show the moment (${time})`) : h("span", { class: "quiet" }, time));
