@@ -11,9 +11,9 @@ struct Root : filum::fuzz::Folder {
     namespace fs = std::filesystem;
     fs::create_directories(file("curricula/fuzz"));
     fs::create_directories(file("models/brain"));
-    for (const auto& entry : fs::directory_iterator(std::string(FILUM_SOURCE_DIR) + "/models"))
+    for (const auto& entry : fs::directory_iterator(fs::path(FILUM_SOURCE_DIR) / "models"))
       if (entry.path().filename() != "brain") fs::create_directory_symlink(entry.path(), file("models/" + entry.path().filename().string()));
-    fs::copy_file(std::string(FILUM_SOURCE_DIR) + "/tests/world/corpus/model_file/brain.yaml", file("models/brain/fuzz.yaml"));
+    fs::copy_file(fs::path(FILUM_SOURCE_DIR) / "tests/world/corpus/model_file/brain.yaml", file("models/brain/fuzz.yaml"));
   }
 };
 
