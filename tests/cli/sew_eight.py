@@ -20,8 +20,8 @@ WIDE, INNER = 0.5, 0.1                                    # [mm], most of an out
 
 # Lengths in mm, times in s. enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
 # edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
-# the cuts, and open again; let_go: where the short end is let go
-DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4))
+# the cuts, and open again; let_go: where the short end is let go; firm [mN]: pull at which the second throw is drawn down (with 8 a knot may spring open stitches later)
+DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4), firm=8)
 
 
 def of_scene(field): return re.search(r'^%s: (.*)' % field, open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read(), re.M).group(1)
@@ -69,6 +69,10 @@ def written(key):
 def button(t, name=None, say=None): return dict(t=t, stop=True, buttons=name, say=say)
 
 
+def drawn_down(key, firm):
+    if abs(key['t'] - 75.393) < .01: key['until'] = '{ pull: "%g mN" }' % firm
+
+
 def beside(key, edge, move):
     if key['p']: key['p'] = [key['p'][0], key['p'][1] - EDGES[edge][1] + move[0], key['p'][2] - EDGES[edge][2] + move[1]]
 
@@ -81,6 +85,7 @@ def holder(keys, p, relative):
             begins = abs(t - 6.7) < 0.05 or 11.45 < t < 11.6
             key['at'] = '{ edge: %d, bring: "0.50 mm" }' % edge if begins else None
             beside(key, edge, p['enter'] if edge == 0 else p['leave'])
+        drawn_down(key, p['firm'])
         if abs(t - 40.293) < .01: key['buttons'] = 'cut'
         if abs(t - 41.293) < .01: key['t'] = 40.293 + p['slide']
         if abs(t - 54.593) < .01: key['p'] = [a + b for a, b in zip(key['p'], p['let_go'])]
@@ -90,6 +95,7 @@ def holder(keys, p, relative):
 def forceps(keys, p, relative):
     for key in keys:
         t = key['t']
+        drawn_down(key, p['firm'])
         if relative and 14.7 < t < 20.6:
             if t < 14.9: key['at'] = '{ edge: 1 }'
             beside(key, 1, p['press'])
@@ -205,8 +211,8 @@ def bite_choices(random_):
 def knot_choices(random_, k):
     """Late stitches lie between others that hold the edges apart: there the clamp slides farther."""
     slides = (.8, .7, .9) if k > 4 else (.5, .6, .7)
-    yield from (dict(slide=slide, let_go=let_go) for let_go in ((0, -.3, -.45), (0, -.25, -.4), (0, -.4, -.6)) for slide in slides)
-    while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .9), 2))
+    yield from (dict(slide=slide, let_go=let_go, firm=20) for let_go in ((0, -.3, -.45), (0, -.25, -.4), (0, -.4, -.6)) for slide in slides)
+    while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .9), 2), firm=random_.choice([8, 12, 20]))
 
 
 def sleeps(pipe):
