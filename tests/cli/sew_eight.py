@@ -211,7 +211,7 @@ def bite_choices(random_):
 def knot_choices(random_, k):
     """Late stitches lie between others that hold the edges apart: there the clamp slides farther."""
     slides = (.8, .7, .9) if k > 4 else (.5, .6, .7)
-    yield from (dict(slide=slide, let_go=let_go, firm=20) for let_go in ((0, -.3, -.45), (0, -.25, -.4), (0, -.4, -.6)) for slide in slides)
+    yield from (dict(slide=slide, let_go=let_go, firm=firm) for let_go in ((0, -.3, -.45), (0, -.25, -.4), (0, -.4, -.6)) for slide in slides for firm in (12, 20))
     while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .9), 2), firm=random_.choice([8, 12, 20]))
 
 
