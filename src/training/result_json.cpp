@@ -300,8 +300,8 @@ std::string result_json(const Result& r, bool full) {
   for (const Curve& c : r.series) json["series"].push_back(curve_json(c));
   json["paths"] = Json::array();
   for (const ToolPath& p : r.paths) json["paths"].push_back(path_json(p));
+  json["verdict"] = r.verdict;
   if (full) {
-    json["verdict"] = r.verdict;
     json["measures"] = measures_json(r.measures);
     if (r.has_knot) json["knot_report"] = report_json(r.knot);
     if (r.security) {

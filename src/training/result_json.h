@@ -7,8 +7,8 @@
 
 namespace filum {
 
-/// Keys "task", "title", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths";
-/// "knot" is null where the task has none. `full` adds "verdict", "measures" and "knot_report" of a knot. Scores and measures that are not finite
+/// Keys "task", "title", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths", "verdict";
+/// "knot" is null where the task has none. `full` adds "measures" and "knot_report" of a knot. Scores and measures that are not finite
 /// become null, such samples of curves and paths are left out. One line.
 std::string result_json(const Result& result, bool full = true);
 

@@ -223,7 +223,7 @@ TEST(TaskSession, JsonHasTheKeysAgreedOn) {
   }
   EXPECT_EQ(json["knot_report"]["composition"], "1=1");
   const auto viewer = nlohmann::json::parse(result_json(run.session.finish(), false));
-  EXPECT_FALSE(viewer.contains("verdict"));
+  EXPECT_TRUE(viewer["verdict"].is_array()) << "a trainee is told why";
   EXPECT_TRUE(viewer["knot"]["security_newton"].is_null());
 }
 

@@ -11,6 +11,11 @@ import { icon, knotPicture } from "./pictures";
 import { chartsOf, drawChart } from "./plots";
 import { clampSection, factorSection, joinSection, stitchSection } from "./stitch_panel";
 
+/// Why it is not passed. Results of older sessions may not say.
+function reasons(verdict: readonly string[]): HTMLElement {
+  return h("ul", { class: "reasons", "aria-label": "Why it is not passed" }, ...verdict.map((why) => h("li", {}, why)));
+}
+
 export class ResultPage implements Page {
   readonly title = "Result";
   readonly element = h("div", { class: "page result" });
@@ -56,6 +61,7 @@ export class ResultPage implements Page {
     this.element.replaceChildren(
       h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${clock(result.seconds)}`)), verdict, total,
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
+      ...(result.passed ? [] : [reasons(result.verdict ?? [])]),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
       h("div", { class: "stitchgrid" }, stitchSection(result, id), this.scaleCard(result, id), joinSection(result.leak), clampSection(result.clamps, result.milking), factorSection(result.thrombosis_factors)),
       this.curves(result));
