@@ -45,7 +45,6 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut,
   s.joins = whole && p.state == PassObservation::State::thread && q.state == PassObservation::State::thread;
   if (b >= 0 || !whole) s.inner[0] = std::abs(p.bite_exit);
   if (b >= 0) s.inner[1] = std::abs(q.bite_entry);
-  s.around = scene.lumen ? kTurn * cut.radius() : 0.0;
   s.layers = layers_of(p.depth_share <= q.depth_share ? p : q, scene);
   return s;
 }
@@ -99,17 +98,31 @@ std::vector<Stitch> stitches_of(const TissueObservation& t, const std::vector<st
   return stitches;
 }
 
-std::vector<double> spacings_of(const std::vector<Stitch>& stitches, const TissueDescription& scene, bool complete) {
+std::vector<double> ways_to_next(const std::vector<Stitch>& stitches, const TissueDescription& scene) {
   const double round = scene.lumen ? kTurn * CutLine(scene).radius() : 0.0;  // [m]
-  std::vector<double> at, gaps;
-  for (const Stitch& s : stitches)
-    if (!s.lost) at.push_back(scene.lumen ? s.position - round * std::floor(s.position / round) : s.position);
+  std::vector<std::pair<double, std::size_t>> at;                           // place of each, ascending
+  for (std::size_t k = 0; k < stitches.size(); ++k)
+    if (const double p = stitches[k].position; !stitches[k].lost) at.emplace_back(scene.lumen ? p - round * std::floor(p / round) : p, k);
   std::sort(at.begin(), at.end());
-  for (std::size_t k = 1; k < at.size(); ++k) gaps.push_back(at[k] - at[k - 1]);
-  if (!scene.lumen || gaps.empty()) return gaps;
-  gaps.push_back(round - (at.back() - at.front()));
-  if (!complete) gaps.erase(std::max_element(gaps.begin(), gaps.end()));
+  std::vector<double> ways(stitches.size(), kNaN);
+  for (std::size_t k = 1; k < at.size(); ++k) ways[at[k - 1].second] = at[k].first - at[k - 1].first;
+  if (scene.lumen && at.size() > 1) ways[at.back().second] = round - (at.back().first - at.front().first);
+  return ways;
+}
+
+std::vector<double> spacings_of(const std::vector<Stitch>& stitches, const TissueDescription& scene, bool complete) {
+  std::vector<double> gaps = ways_to_next(stitches, scene);
+  std::erase_if(gaps, [](double gap) { return std::isnan(gap); });
+  if (scene.lumen && !complete && !gaps.empty()) gaps.erase(std::max_element(gaps.begin(), gaps.end()));
   return gaps;
+}
+
+double variation(const std::vector<double>& spacings) {
+  if (spacings.size() < 2) return kNaN;
+  double mean = 0.0, square = 0.0;
+  for (const double g : spacings) mean += g / static_cast<double>(spacings.size());
+  for (const double g : spacings) square += (g - mean) * (g - mean) / static_cast<double>(spacings.size());
+  return std::sqrt(square) / mean;
 }
 
 std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, const std::vector<double>& spacings, double thickness, double end) {
@@ -127,11 +140,8 @@ std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>&
     if (s.slack > rules.slack) found.push_back({"loose-knot", i, end, s.slack, "m"});
   }
   if (spacings.size() < 2) return found;
-  double mean = 0.0, square = 0.0;
-  for (const double g : spacings) mean += g / static_cast<double>(spacings.size());
-  for (const double g : spacings) square += (g - mean) * (g - mean) / static_cast<double>(spacings.size());
-  const double variation = std::sqrt(square) / mean, ratio = *std::max_element(spacings.begin(), spacings.end()) / *std::min_element(spacings.begin(), spacings.end());
-  if (variation > rules.spacing_variation || ratio > rules.spacing_ratio) found.push_back({"unequal-spacing", -1, stitches.back().time, variation, "-"});
+  const double varied = variation(spacings), ratio = *std::max_element(spacings.begin(), spacings.end()) / *std::min_element(spacings.begin(), spacings.end());
+  if (varied > rules.spacing_variation || ratio > rules.spacing_ratio) found.push_back({"unequal-spacing", -1, stitches.back().time, varied, "-"});
   return found;
 }
 

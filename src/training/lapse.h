@@ -55,7 +55,7 @@ struct Stitch {
   bool joins = false;             // thread is in both sides of the cut: not a lone pass, not torn out
   bool lost = false;              // torn or pulled out on one side at least
   double inner[2] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};  // [m], as bite: where the needle left the first side and came into the second
-  double around = 0.0;            // [m], length of a cut that is closed; 0: it has ends
+  double next = std::numeric_limits<double>::quiet_NaN();  // [m], along the cut to the next stitch, see ways_to_next
   std::vector<std::string> layers;  // that were gone into on the side with the lesser depth, outermost first
 };
 
@@ -71,9 +71,12 @@ struct Lapse {
 /// `pairs`: passes of the stitches. All other passes that came out stand alone.
 std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
                                 const TissueDescription& scene);
-/// [m], between neighbours along the cut; of stitches that were lost none. A cut round a vessel has no end: once all its stitches are `complete` the last is the
-/// first one's neighbour; until then the widest space is where it is still open.
+/// [m], from each stitch along the cut to the next, round a vessel from the last to the first; NaN of one that was lost or has none.
+std::vector<double> ways_to_next(const std::vector<Stitch>& stitches, const TissueDescription& scene);
+/// [m], between neighbours along the cut. Round a vessel that is not yet `complete` the widest space is left out: there it is still open.
 std::vector<double> spacings_of(const std::vector<Stitch>& stitches, const TissueDescription& scene, bool complete);
+/// Standard deviation over mean; NaN of less than two.
+double variation(const std::vector<double>& spacings);
 /// Of the stitches one by one, and of their spacing. `end` [s]: the moment that knots and tension were looked at.
 std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, const std::vector<double>& spacings, double thickness, double end);
 /// "back-wall": the needle came into the lumen at one place of the vessel and left it more than rules.back_wall around it (CutLine::round_lumen).

@@ -58,6 +58,10 @@ void name_tension(const Observation& o, Stitch& s) {
 
 }  // namespace
 
+double NeedleReport::count(std::string_view lapse) const {
+  return static_cast<double>(std::count_if(lapses.begin(), lapses.end(), [&](const Lapse& l) { return lapse == l.name; }));
+}
+
 double needle_value(Measure measure, const NeedleReport& r) {
   const auto worst = [&](auto value) {
     double most = kNaN;
@@ -233,6 +237,8 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
     if (last != nullptr) name_tension(*last, s);
   }
   if (last != nullptr && !r.stitches.empty()) for (const StitchKnot& k : knots_in_tissue(*last)) name_knots(k, tissue_, r.stitches);
+  const std::vector<double> ways = ways_to_next(r.stitches, scene_.tissue);
+  for (std::size_t k = 0; k < ways.size(); ++k) r.stitches[k].next = ways[k];
   const bool complete = done() && std::isfinite(task_.lapses.line_gap);  // no other rules ask for the whole way round
   r.spacings = spacings_of(r.stitches, scene_.tissue, complete);
   r.lapses = lapses_of(task_.lapses, r.stitches, r.spacings, r.thickness, time_);

@@ -1,19 +1,12 @@
 #include "training/patency_factors.h"
 
-#include <algorithm>
-#include <string_view>
-
 namespace filum {
 namespace {
 
 constexpr double kNarrow = 0.25;  // share of the lumen, from which narrowing is named
 
-double count(const NeedleReport& r, std::string_view name) {
-  return static_cast<double>(std::count_if(r.lapses.begin(), r.lapses.end(), [&](const Lapse& l) { return name == l.name; }));
-}
-
 PatencyFactor lapse_factor(const NeedleReport& r, const char* name, const char* title, const char* source) {
-  const double n = count(r, name);
+  const double n = r.count(name);
   return {name, title, n, "-", n > 0.0, source};
 }
 
@@ -23,9 +16,9 @@ std::vector<PatencyFactor> patency_factors(const NeedleReport& r) {
   if (!r.join) return {};
   const JoinReport& j = *r.join;
   return {lapse_factor(r, "back-wall", "Stitches through the back wall", "Paladino 2023: odds ratio 59 for thrombosis of rat arteries, about 1000 of veins"),
-          {"thread-in-lumen", "Thread in the lumen", 1e3 * j.thread_inside, "mm", count(r, "thread-in-lumen") > 0.0, "Anastomosis Lapse Index"},
+          {"thread-in-lumen", "Thread in the lumen", 1e3 * j.thread_inside, "mm", r.count("thread-in-lumen") > 0.0, "Anastomosis Lapse Index"},
           {"narrowing", "Narrowing of the lumen", 100.0 * j.narrowing, "%", j.narrowing > kNarrow, "uneven lumens lower patency (Esanu 2026); threshold 25 % [P]"},
-          {"edge-overlap", "Edges past each other or rolled inward", j.overlap, "thicknesses", count(r, "edge-overlap") > 0.0, "Anastomosis Lapse Index: media and adventitia in the stream"},
+          {"edge-overlap", "Edges past each other or rolled inward", j.overlap, "thicknesses", r.count("edge-overlap") > 0.0, "Anastomosis Lapse Index: media and adventitia in the stream"},
           lapse_factor(r, "wall-tear", "Stitches that tore the wall", "Anastomosis Lapse Index"),
           lapse_factor(r, "too-tight", "Stitches too tight", "tight stitches, necrosis of the media (histology of human vessels)"),
           lapse_factor(r, "partial-thickness", "Stitches without the intima", "Anastomosis Lapse Index"),

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 
 #include "base/numbers.h"
 
@@ -48,14 +47,6 @@ ScaleItem item_of(const YamlNode& node, int most) {
   return item;
 }
 
-double variation(const std::vector<double>& gaps) {
-  if (gaps.size() < 2) return kNaN;
-  double mean = 0.0, square = 0.0;
-  for (const double g : gaps) mean += g / static_cast<double>(gaps.size());
-  for (const double g : gaps) square += (g - mean) * (g - mean) / static_cast<double>(gaps.size());
-  return std::sqrt(square) / mean;
-}
-
 /// The most (or least) over the stitches that join both sides; NaN if it is not known of one.
 template <class Value>
 double over_stitches(const NeedleReport& r, bool most, Value value) {
@@ -67,10 +58,6 @@ double over_stitches(const NeedleReport& r, bool most, Value value) {
     found = most ? std::fmax(found, v) : std::fmin(found, v);
   }
   return found;
-}
-
-double count(const NeedleReport& r, std::string_view lapse) {
-  return static_cast<double>(std::count_if(r.lapses.begin(), r.lapses.end(), [&](const Lapse& l) { return lapse == l.name; }));
 }
 
 /// Share of the stitches that are tied with a knot that holds in nylon: square, surgeon's, three throws.
@@ -136,8 +123,8 @@ double scale_value(const std::string& measure, const NeedleReport& r) {
   if (!r.has_tissue) return kNaN;
   if (measure == "leak") return r.join && r.join->sound ? 60e6 * r.join->leak : kNaN;
   if (measure == "lapses") return static_cast<double>(r.lapses.size());
-  if (measure == "back-walls") return count(r, "back-wall");
-  if (measure == "too-tight") return count(r, "too-tight");
+  if (measure == "back-walls") return r.count("back-wall");
+  if (measure == "too-tight") return r.count("too-tight");
   if (measure == "spacing-variation") return variation(r.spacings);
   if (measure == "bite-widest") return over_stitches(r, true, [](const Stitch& s) { return std::max(s.bite[0], s.bite[1]); }) / r.thickness;
   if (measure == "bite-narrowest") return over_stitches(r, false, [](const Stitch& s) { return std::min(s.bite[0], s.bite[1]); }) / r.thickness;

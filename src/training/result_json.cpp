@@ -118,24 +118,7 @@ Json pressure_json(const PressureReport& p) {
           {"limits", {{"title", p.limits.title}, {"version", p.limits.version}, {"label", p.limits.label}, {"source", p.limits.source}}}};
 }
 
-/// [m], from each stitch that was not lost to the next along the cut, round a vessel from the last to the first; NaN where there is none.
-std::vector<double> next_spacings(const std::vector<Stitch>& stitches) {
-  std::vector<double> next(stitches.size(), std::numeric_limits<double>::quiet_NaN());
-  std::vector<std::size_t> order;
-  for (std::size_t k = 0; k < stitches.size(); ++k)
-    if (!stitches[k].lost) order.push_back(k);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return stitches[a].position < stitches[b].position; });
-  for (std::size_t k = 0; k < order.size() && order.size() > 1; ++k) {
-    const Stitch& s = stitches[order[k]];
-    if (k + 1 < order.size())
-      next[order[k]] = stitches[order[k + 1]].position - s.position;
-    else if (s.around > 0.0)
-      next[order[k]] = stitches[order[0]].position + s.around - s.position;
-  }
-  return next;
-}
-
-Json stitch_json(const Stitch& s, double spacing, double thickness) {
+Json stitch_json(const Stitch& s, double thickness) {
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
   return {{"time", finite(s.time)},
           {"passes", {s.first, s.second}},
@@ -148,7 +131,7 @@ Json stitch_json(const Stitch& s, double spacing, double thickness) {
           {"depth_share", finite(s.depth)},
           {"depth_layers", s.layers},
           {"position_m", finite(s.position)},
-          {"spacing_m", finite(spacing)},
+          {"spacing_m", finite(s.next)},
           {"tension_n", finite(s.tension)},
           {"peak_force_n", finite(s.peak_force)},
           {"torn_m", finite(s.torn)},
@@ -227,8 +210,7 @@ void add_needle(const NeedleReport& n, Json& json) {
   if (n.out_of_turn >= 0) json["needle"]["stitches_out_of_turn"] = n.out_of_turn;
   if (!n.has_tissue) return;
   json["stitches"] = Json::array();
-  const std::vector<double> next = next_spacings(n.stitches);
-  for (std::size_t k = 0; k < n.stitches.size(); ++k) json["stitches"].push_back(stitch_json(n.stitches[k], next[k], n.thickness));
+  for (const Stitch& s : n.stitches) json["stitches"].push_back(stitch_json(s, n.thickness));
   json["spacings_m"] = finite(n.spacings);
   json["lapses"] = Json::array();
   for (const Lapse& l : n.lapses) json["lapses"].push_back({{"name", l.name}, {"stitch", l.stitch}, {"time", finite(l.time)}, {"value", finite(l.value)}, {"unit", l.unit}, {"critical", l.critical}});

@@ -52,13 +52,18 @@ std::vector<EdgeGap> slits(double gap) {
   return gaps;
 }
 
+struct Measured {
+  VesselMesh mesh = stumps();
+  LumenLine line{mesh};
+  BloodOptions blood;
+  Circulation c;
+  Measured() { line.measure(mesh.nodes, blood.viscosity); }
+};
+
 /// Half of the lumen before the cut, half behind it, all in a row with the circulation.
 TEST(VesselFlow, ATightOpenJoinLetsThroughWhatTheCirculationTakes) {
-  const VesselMesh mesh = stumps();
-  LumenLine line(mesh);
-  const BloodOptions blood;
-  line.measure(mesh.nodes, blood.viscosity);
-  const Circulation c;
+  const Measured tube;
+  const auto& [mesh, line, blood, c] = tube;
   const double lumen = 8.0 * kPi * blood.viscosity * 6e-3 / (polygon_area() * polygon_area());
   const Balance b = balance_join(line, {}, c, blood);
   EXPECT_NEAR(b.on, (c.pressure - c.back) / (c.upstream() + c.downstream() + lumen), 1e-4 * b.on);
@@ -70,11 +75,8 @@ TEST(VesselFlow, ATightOpenJoinLetsThroughWhatTheCirculationTakes) {
 
 /// Viscous slits let out in proportion to the pressure, Q = G p with G = s g^3 / (12 mu d): three resistances that meet in the join.
 TEST(VesselFlow, WhatLeaksDoesNotGoOnAndAJoinThatGapesIsNotPatent) {
-  const VesselMesh mesh = stumps();
-  LumenLine line(mesh);
-  const BloodOptions blood;
-  line.measure(mesh.nodes, blood.viscosity);
-  const Circulation c;
+  const Measured tube;
+  const auto& [mesh, line, blood, c] = tube;
   const double half = 4.0 * kPi * blood.viscosity * 6e-3 / (polygon_area() * polygon_area()), up = c.upstream() + half, down = c.downstream() + half;
   const double g = 4e-6, leaks = 2.2e-3 * g * g * g / (12.0 * blood.viscosity * 0.1e-3);
   const double p = (c.pressure / up + c.back / down) / (1.0 / up + 1.0 / down + leaks);

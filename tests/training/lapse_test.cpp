@@ -84,14 +84,12 @@ TEST(Lapse, AStitchTellsTheLayersOfItsThinnerSideAndItsInnerBites) {
   EXPECT_EQ(s.layers, (std::vector<std::string>{"adventitia", "media"}));
   EXPECT_NEAR(s.inner[0], 0.28e-3, 1e-12);
   EXPECT_NEAR(s.inner[1], 0.2e-3, 1e-12);
-  EXPECT_EQ(s.around, 0.0);
   t.n_passes = 1;
   const Stitch half = stitches_in(t, vessel)[0];
   EXPECT_NEAR(half.inner[0], 0.28e-3, 1e-12);
   EXPECT_TRUE(std::isnan(half.inner[1]));
   vessel.lumen = true;
   vessel.radius = 0.5e-3;
-  EXPECT_NEAR(stitches_in(t, vessel)[0].around, kTurn * 0.5e-3, 1e-9);
 }
 
 TEST(Lapse, EachPlantedFaultIsFoundAndNothingElse) {
@@ -324,6 +322,23 @@ TEST(Lapse, SpacingRoundATubeHangsOnNoSeam) {
     ASSERT_EQ(closed.size(), 7u);
     EXPECT_NEAR(*std::max_element(closed.begin(), closed.end()), quarter, 1e-12) << from;
   }
+}
+
+TEST(Lapse, EachStitchHasAWayToTheNextButNoneWasLost) {
+  const double quarter = 0.5 * std::numbers::pi * kRadius;
+  auto stitches = stitches_in(round_the_tube({200.0, 20.0, 290.0}), tube());
+  auto ways = ways_to_next(stitches, tube());
+  EXPECT_NEAR(ways[0], quarter, 1e-12);
+  EXPECT_NEAR(ways[1], 2.0 * quarter, 1e-12);
+  EXPECT_NEAR(ways[2], quarter, 1e-12) << "over the seam, to the first";
+  stitches[0].lost = true;
+  ways = ways_to_next(stitches, tube());
+  EXPECT_TRUE(std::isnan(ways[0]));
+  EXPECT_NEAR(ways[1], 3.0 * quarter, 1e-12);
+  ways = ways_to_next(stitches_in(good(), card()), card());
+  EXPECT_NEAR(ways[0], 0.4e-3, 1e-12);
+  EXPECT_TRUE(std::isnan(ways[3])) << "a card's cut has an end";
+  EXPECT_TRUE(std::isnan(ways_to_next(stitches_in(round_the_tube({20.0}), tube()), tube())[0])) << "nobody is its own neighbour";
 }
 
 TEST(Lapse, TheOpenClampIsNoPartOfABite) {

@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 #include "oblique_edges.h"
 #include "training/needle_watch.h"
-#include "training/score.h"
 #include "training/task.h"
 
 namespace filum {
@@ -217,52 +215,6 @@ TEST(StitchOrder, BitesThatWerePulledOutAreNoStitch) {
   EXPECT_EQ(v.made(), "1000");
   v.stitch(150.0);
   EXPECT_EQ(v.made(), "1100") << "120 degrees from the stitch, not from the bite that was pulled out";
-}
-
-TEST(StitchOrder, StitchesOutOfTurnDoNotPass) {
-  const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/triangulation-120/task.yaml");
-  for (const int wrong : {0, 1}) {
-    Result r;
-    r.finished = true;
-    r.needle.emplace();
-    r.needle->has_tissue = true;
-    r.needle->out_of_turn = wrong;
-    EXPECT_EQ(needle_value(Measure::stitch_order, *r.needle), wrong);
-    score(task, false, r);
-    bool told = false;
-    for (const std::string& why : r.verdict) told = told || why.find("in their turn") != std::string::npos;
-    EXPECT_EQ(told, wrong > 0);
-  }
-}
-
-/// What the verdict says of a finished anastomosis.
-std::string verdict_of(const std::function<void(NeedleReport&)>& change) {
-  const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/anastomosis-8/task.yaml");
-  Result r;
-  r.finished = true;
-  r.needle.emplace();
-  r.needle->has_tissue = true;
-  r.needle->out_of_turn = 0;
-  r.needle->join = JoinReport{};
-  r.needle->join->leak = 1e-6 / 60.0;
-  r.needle->join->narrowing = 0.2;
-  r.needle->join->patent = true;
-  change(*r.needle);
-  score(task, false, r);
-  std::string all;
-  for (const std::string& why : r.verdict) all += why + "\n";
-  return all;
-}
-
-TEST(AnastomosisVerdict, NeedsAJoinThatHoldsAndLetsThrough) {
-  const auto says = [](const std::string& verdict, const char* words) { return verdict.find(words) != std::string::npos; };
-  const std::string good = verdict_of([](NeedleReport&) {});
-  EXPECT_FALSE(says(good, "leaks") || says(good, "narrowed") || says(good, "patent") || says(good, "critical")) << good;
-  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.join->leak = 42e-6 / 60.0; }), "the join leaks 42 ml/min, at most 2 ml/min"));
-  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.join->narrowing = 0.7; }), "the lumen is narrowed by 70 %, at most 50 %"));
-  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.join->patent = false; }), "not patent"));
-  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.join.reset(); }), "could not be tested"));
-  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.lapses.push_back({"back-wall", 2, 1.0, 170.0, "deg", true}); }), "stitch 3: back-wall, a critical failure"));
 }
 
 }  // namespace stitch_order_test

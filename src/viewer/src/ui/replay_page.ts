@@ -30,6 +30,7 @@ export class ReplayPage implements Page {
   private readonly ready = h("div", { class: "ready", "aria-hidden": "true" });
   private readonly computed = h("progress", { max: 1, value: 0, "aria-label": "Share that is computed" });
   private readonly computing = h("p", { class: "loading", role: "status" });
+  private readonly computedTo = h("p", { class: "quiet", "aria-hidden": "true" }); // changes ten times a second: not to be read out
   private readonly clock = h("output", { class: "time" }, "");
   private readonly unhook: () => void;
   private steps: StepPanel | null = null;
@@ -199,8 +200,9 @@ export class ReplayPage implements Page {
     const waits = state.time > state.ready + kBehind;
     if (!waits) return clear(this.over);
     this.computed.value = state.ready / state.time;
-    setText(this.computing, `Computing up to ${clock(state.time)}, now at ${clock(state.ready)}. It is shown when it is there.`);
-    if (!this.computing.isConnected) this.over.replaceChildren(h("div", { class: "card endcard" }, this.computing, this.computed));
+    setText(this.computing, `Computing up to ${clock(state.time)}. It is shown when it is there.`);
+    setText(this.computedTo, `now at ${clock(state.ready)}`);
+    if (!this.computing.isConnected) this.over.replaceChildren(h("div", { class: "card endcard" }, this.computing, this.computed, this.computedTo));
   }
 
   private showTime(time: number, duration: number): void {

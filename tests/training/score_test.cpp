@@ -1,0 +1,61 @@
+#include "training/score.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "training/needle_watch.h"
+#include "training/task.h"
+
+namespace filum {
+namespace score_test {
+
+TEST(Score, StitchesOutOfTurnDoNotPass) {
+  const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/triangulation-120/task.yaml");
+  for (const int wrong : {0, 1}) {
+    Result r;
+    r.finished = true;
+    r.needle.emplace();
+    r.needle->has_tissue = true;
+    r.needle->out_of_turn = wrong;
+    EXPECT_EQ(needle_value(Measure::stitch_order, *r.needle), wrong);
+    score(task, false, r);
+    bool told = false;
+    for (const std::string& why : r.verdict) told = told || why.find("in their turn") != std::string::npos;
+    EXPECT_EQ(told, wrong > 0);
+  }
+}
+
+/// What the verdict says of a finished anastomosis.
+std::string verdict_of(const std::function<void(NeedleReport&)>& change) {
+  const Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/anastomosis-8/task.yaml");
+  Result r;
+  r.finished = true;
+  r.needle.emplace();
+  r.needle->has_tissue = true;
+  r.needle->out_of_turn = 0;
+  r.needle->join = JoinReport{};
+  r.needle->join->leak = 1e-6 / 60.0;
+  r.needle->join->narrowing = 0.2;
+  r.needle->join->patent = true;
+  change(*r.needle);
+  score(task, false, r);
+  std::string all;
+  for (const std::string& why : r.verdict) all += why + "\n";
+  return all;
+}
+
+TEST(Score, AnAnastomosisNeedsAJoinThatHoldsAndLetsThrough) {
+  const auto says = [](const std::string& verdict, const char* words) { return verdict.find(words) != std::string::npos; };
+  const std::string good = verdict_of([](NeedleReport&) {});
+  EXPECT_FALSE(says(good, "leaks") || says(good, "narrowed") || says(good, "patent") || says(good, "critical")) << good;
+  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.join->leak = 42e-6 / 60.0; }), "the join leaks 42 ml/min, at most 2 ml/min"));
+  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.join->narrowing = 0.7; }), "the lumen is narrowed by 70 %, at most 50 %"));
+  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.join->patent = false; }), "not patent"));
+  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.join.reset(); }), "could not be tested"));
+  EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.lapses.push_back({"back-wall", 2, 1.0, 170.0, "deg", true}); }), "stitch 3: back-wall, a critical failure"));
+}
+
+}  // namespace score_test
+}  // namespace filum
