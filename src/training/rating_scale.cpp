@@ -79,7 +79,7 @@ int points_of(const ScaleCriterion& c, double value) {
 
 std::string reason(const ScaleCriterion& c, double value) {
   char text[64];
-  std::snprintf(text, sizeof text, " %.3g%s%s", value, c.unit == "-" ? "" : " ", c.unit == "-" ? "" : c.unit.c_str());
+  std::snprintf(text, sizeof text, ": %.3g%s%s", value, c.unit == "-" ? "" : " ", c.unit == "-" ? "" : c.unit.c_str());
   return c.title + text;
 }
 
