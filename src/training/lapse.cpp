@@ -125,6 +125,10 @@ double variation(const std::vector<double>& spacings) {
   return std::sqrt(square) / mean;
 }
 
+double count_of(const std::vector<Lapse>& lapses, std::string_view name) {
+  return static_cast<double>(std::count_if(lapses.begin(), lapses.end(), [&](const Lapse& l) { return name == l.name; }));
+}
+
 std::vector<Lapse> lapses_of(const LapseRules& rules, const std::vector<Stitch>& stitches, const std::vector<double>& spacings, double thickness, double end) {
   std::vector<Lapse> found;
   for (std::size_t k = 0; k < stitches.size(); ++k) {

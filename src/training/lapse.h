@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/yaml_file.h"
@@ -68,6 +69,8 @@ struct Lapse {
   bool critical = false;
 };
 
+/// How many there are of this name.
+double count_of(const std::vector<Lapse>& lapses, std::string_view name);
 /// `pairs`: passes of the stitches. All other passes that came out stand alone.
 std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
                                 const TissueDescription& scene);

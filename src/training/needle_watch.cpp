@@ -58,10 +58,6 @@ void name_tension(const Observation& o, Stitch& s) {
 
 }  // namespace
 
-double NeedleReport::count(std::string_view lapse) const {
-  return static_cast<double>(std::count_if(lapses.begin(), lapses.end(), [&](const Lapse& l) { return lapse == l.name; }));
-}
-
 double needle_value(Measure measure, const NeedleReport& r) {
   const auto worst = [&](auto value) {
     double most = kNaN;

@@ -44,7 +44,6 @@ struct NeedleReport {
   std::optional<ClampReport> clamps;     // of a vessel, if the trainee took one off
   std::optional<MilkingReport> milking;  // if it was tried
   std::shared_ptr<const RatingScale> scale;  // that raters mark it by, or none
-  double count(std::string_view lapse) const;  // lapses of this name
 };
 
 /// What a rubric line looks at; NaN for measures of other tasks.

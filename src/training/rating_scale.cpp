@@ -123,8 +123,8 @@ double scale_value(const std::string& measure, const NeedleReport& r) {
   if (!r.has_tissue) return kNaN;
   if (measure == "leak") return r.join && r.join->sound ? 60e6 * r.join->leak : kNaN;
   if (measure == "lapses") return static_cast<double>(r.lapses.size());
-  if (measure == "back-walls") return r.count("back-wall");
-  if (measure == "too-tight") return r.count("too-tight");
+  if (measure == "back-walls") return count_of(r.lapses, "back-wall");
+  if (measure == "too-tight") return count_of(r.lapses, "too-tight");
   if (measure == "spacing-variation") return variation(r.spacings);
   if (measure == "bite-widest") return over_stitches(r, true, [](const Stitch& s) { return std::max(s.bite[0], s.bite[1]); }) / r.thickness;
   if (measure == "bite-narrowest") return over_stitches(r, false, [](const Stitch& s) { return std::min(s.bite[0], s.bite[1]); }) / r.thickness;
