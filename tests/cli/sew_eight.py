@@ -16,12 +16,14 @@ TASK = os.environ.get('TASK', 'anastomosis-8')
 SECONDS = 91.0                                            # of the script, a stitch
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
 FIRM = 0.45                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
-WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
+WIDE, INNER = 0.5, 0.1                                   # [mm], most of an outer bite, least of an inner one
+LOOP = 5.6                                                # [mm], most of a knot's loop
 
 # Lengths in mm, times in s. enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
 # edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
-# the cuts, and open again; let_go: where the short end is let go; firm [mN]: pull at which the second throw is drawn down (with 8 a knot may spring open stitches later)
-DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4), firm=8)
+# the cuts, and open again; let_go: where the short end is let go; first, firm [mN]: pulls at which the first and the second throw are drawn down
+# (with 8 a knot may spring open stitches later)
+DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4), first=8, firm=8)
 
 
 def of_scene(field): return re.search(r'^%s: (.*)' % field, open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read(), re.M).group(1)
@@ -69,8 +71,9 @@ def written(key):
 def button(t, name=None, say=None): return dict(t=t, stop=True, buttons=name, say=say)
 
 
-def drawn_down(key, firm):
-    if abs(key['t'] - 75.393) < .01: key['until'] = '{ pull: "%g mN" }' % firm
+def drawn_down(key, p):
+    for t, pull in ((52.693, 'first'), (75.393, 'firm')):
+        if abs(key['t'] - t) < .01: key['until'] = '{ pull: "%g mN" }' % p[pull]
 
 
 def beside(key, edge, move):
@@ -85,7 +88,7 @@ def holder(keys, p, relative):
             begins = abs(t - 6.7) < 0.05 or 11.45 < t < 11.6
             key['at'] = '{ edge: %d, bring: "0.50 mm" }' % edge if begins else None
             beside(key, edge, p['enter'] if edge == 0 else p['leave'])
-        drawn_down(key, p['firm'])
+        drawn_down(key, p)
         if abs(t - 40.293) < .01: key['buttons'] = 'cut'
         if abs(t - 41.293) < .01: key['t'] = 40.293 + p['slide']
         if abs(t - 54.593) < .01: key['p'] = [a + b for a, b in zip(key['p'], p['let_go'])]
@@ -95,7 +98,7 @@ def holder(keys, p, relative):
 def forceps(keys, p, relative):
     for key in keys:
         t = key['t']
-        drawn_down(key, p['firm'])
+        drawn_down(key, p)
         if relative and 14.7 < t < 20.6:
             if t < 14.9: key['at'] = '{ edge: 1 }'
             beside(key, 1, p['press'])
@@ -153,6 +156,7 @@ def follow(name, check, given_up, pipe=None, order=None):
         states = [s for s in told(name) if s['why'] == 'stop']
         wrong = next((w for s in states[seen:] if (w := check(s))), None)
         seen = len(states)
+        if 'stitch-out-of-turn' in text: wrong = wrong or 'not in its turn'
         if wrong is None and ended and not states: wrong = text[-300:]
         if wrong is None and given_up(): wrong = 'another was good'
         if wrong and not ended and (m := re.match(r'pid (\d+)', text)): subprocess.run(['kill', '-9', m.group(1)])
@@ -178,7 +182,7 @@ def knot_wrong(k, s, tau):
     if len(square) < k + (tau > 76): return 'knots %s' % [(n['class'], n['loop']) for n in s['knots']]
     if tau < 55 or 70 < tau < 76: return None if s['thread_held'][1] else 'short end not held'
     if 55 < tau < 70: return None if any(n['class'] == 'overhand' for n in s['knots']) else 'first throw open'
-    return 'loose or long %s' % [(n['loop'], n['tail']) for n in square] if tau > 80 and (square[-1]['tail'] < FIRM or any(n['loop'] > 5.6 or not 0.28 < n['tail'] < 1.6 for n in square)) else None
+    return 'loose or long %s' % [(n['loop'], n['tail']) for n in square] if tau > 80 and (square[-1]['tail'] < FIRM or any(n['loop'] > LOOP or not 0.28 < n['tail'] < 1.6 for n in square)) else None
 
 
 def race(tries, run, most, log):
@@ -199,20 +203,24 @@ def race(tries, run, most, log):
     return good[0] if good else None
 
 
-def bite_choices(random_):
-    for enter, leave, press in (((0, -.24), (.2, .04), .18), ((-.03, -.24), (.22, .03), .18), ((.045, -.27), (.12, .06), .25), ((.03, -.31), (.2, -.05), .2),
-                                ((-.05, -.22), (.12, .04), .18), ((-.03, -.2), (.22, 0), .18), ((-.03, -.24), (.22, .03), .22), ((.045, -.16), (.14, .02), .18)):
-        yield dict(enter=enter, leave=leave, press=(press, 0), take=3.7)
+def bite_choices(random_, k):
+    """Between stitches that hold the edges together the second one is nearer: there the needle is brought on farther before it comes up."""
+    nearer = ((0, -.24), (.3, .1), .2), ((0, -.24), (.27, .1), .2), ((0, -.24), (.42, .1), .2), ((0, -.24), (.36, .1), .2)
+    usual = (((0, -.24), (.2, .04), .18), ((-.03, -.24), (.22, .03), .18), ((.045, -.27), (.12, .06), .25), ((.03, -.31), (.2, -.05), .2),
+             ((-.05, -.22), (.12, .04), .18), ((-.03, -.2), (.22, 0), .18), ((-.03, -.24), (.22, .03), .22), ((.045, -.16), (.14, .02), .18))
+    for enter, leave, press in usual[:2] + nearer + usual[2:] if k > 3 else usual: yield dict(enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
-        yield dict(enter=(near(-.05, .09), near(-.36, -.2)), leave=(near(.06, .28), near(-.06, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
+        yield dict(enter=(near(-.05, .09), near(-.36, -.2)), leave=(near(.06, .28) if k < 4 else near(.2, .5), near(-.06, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
 
 
 def knot_choices(random_, k):
     """Late stitches lie between others that hold the edges apart: there the clamp slides farther."""
     slides = (.8, .7, .9) if k > 4 else (.5, .6, .7)
     yield from (dict(slide=slide, let_go=let_go, firm=firm) for let_go in ((0, -.3, -.45), (0, -.25, -.4), (0, -.4, -.6)) for slide in slides for firm in (12, 20))
-    while True: yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .9), 2), firm=random_.choice([8, 12, 20]))
+    while True:
+        yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .9), 2), first=random_.choice([8, 9, 10]),
+                   firm=random_.choice([12, 20, 30]))
 
 
 def sleeps(pipe):
@@ -236,7 +244,7 @@ def sew(state, file, random_, log):
         script = write(me + '.yaml', state['stitches'] + [choice])
         _, wrong = follow(me, lambda s: bites_wrong(k, s, s['t'] - start), given_up, state['pipe'], 'go %s %s %g %g %g %g' % (me, script, start + 38, start + 14.2, start + 24.2, start + 37.8))
         return (choice, '%s_%.1f' % (me, start + 37.8)), wrong
-    ways = bite_choices(random_)
+    ways = bite_choices(random_, k)
     for _ in range(6):
         state['count'] = state.get('count', 0) + 1
         if k == 0:
