@@ -16,7 +16,7 @@ TASK = os.environ.get('TASK', 'anastomosis-8')
 SECONDS = 91.0                                            # of the script, a stitch
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
 FIRM = 0.45                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
-WIDE, INNER = 0.5, 0.1                                   # [mm], most of an outer bite, least of an inner one
+WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
 LOOP = 5.6                                                # [mm], most of a knot's loop
 
 # Lengths in mm, times in s. enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
