@@ -17,6 +17,7 @@ JoinReport tested_join(const World& world) {
   r.area = t.area;
   r.sector_flow.assign(t.flow.begin(), t.flow.end());
   r.sector_gap.assign(t.gap.begin(), t.gap.end());
+  for (const EdgeGap& g : t.edge) r.edge.push_back({g.share, g.gap});
   r.narrowing = t.narrowing;
   r.through = t.through;
   r.patent = t.patent;

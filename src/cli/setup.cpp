@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/yaml_file.h"
+#include "training/needle_task.h"
 #include "world/brain_model.h"
 #include "world/model.h"
 #include "world/task_folder.h"
@@ -28,6 +29,23 @@ std::shared_ptr<const Model> turned(std::shared_ptr<const Model> model, double s
   return m;
 }
 
+bool asks_to_cut(const Task& task) {
+  using Goal = NeedleGoal::Kind;
+  if (task.needle != nullptr) return std::any_of(task.needle->goals.begin(), task.needle->goals.end(), [](const NeedleGoal& g) { return g.kind == Goal::cut; });
+  return std::any_of(task.steps.begin(), task.steps.end(), [](const TaskStep& s) { return s.kind == StepKind::cut; });
+}
+
+/// Whether the scene has the tools that the steps are made with. Throws InputError.
+void check_tools(const std::string& file, const Task& task, const Model& model) {
+  const auto blades = [](const InstrumentParameters& p) { return p.kind == "scissors"; };
+  if (asks_to_cut(task) && std::none_of(model.instruments.begin(), model.instruments.end(), blades))
+    throw InputError(file, "steps", "cut", "scissors among the instruments of its scene.yaml");
+  if (task.needle == nullptr) return;
+  for (const NeedleGoal& g : task.needle->goals)
+    if (g.tool < 0 || g.tool >= static_cast<int>(model.instruments.size()))
+      throw InputError(file, "tool", std::to_string(g.tool), "one of the " + std::to_string(model.instruments.size()) + " instruments of its scene.yaml, from 0");
+}
+
 }  // namespace
 
 std::vector<std::string> task_names(const std::string& root) {
@@ -46,7 +64,9 @@ Setup load_setup(const std::string& root, const std::string& task, const std::st
     for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
     throw InputError("curricula", "task", task, "one of: " + all);
   }
-  return {root, model_file, turned(load_model(root, task, model_file), stiffness), load_task(task_file(root, task)), stiffness};
+  Setup setup{root, model_file, turned(load_model(root, task, model_file), stiffness), load_task(task_file(root, task)), stiffness};
+  check_tools(task_file(root, task), setup.task, *setup.model);
+  return setup;
 }
 
 std::vector<Chapter> load_chapters(const std::string& root, std::vector<std::string>& problems) {

@@ -9,12 +9,19 @@
 
 namespace filum {
 
+/// A node of the cut edge.
+struct EdgePlace {
+  double share = 0.0;                // where on it: share of its length as first made, from where the vessel's angle is zero
+  double gap = 0.0;                  // [m], to the other edge
+};
+
 struct JoinReport {
   double pressure = 0.0;             // [Pa], held
   double leak = 0.0;                 // [m3/s]
   double area = 0.0;                 // [m2], of gaps that are not sealed
   std::vector<double> sector_flow;   // [m3/s], from where the vessel's angle is zero
   std::vector<double> sector_gap;    // [m], mean
+  std::vector<EdgePlace> edge;       // all its nodes, ascending
   double narrowing = 0.0;            // [-], 0 open to 1 closed
   double through = 0.0;              // [m3/s], on beyond the join, in the scene's circulation
   bool patent = false;

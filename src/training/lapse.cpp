@@ -54,6 +54,17 @@ const std::vector<std::string> kLapses = {"oblique", "wide-bite", "partial-thick
 
 double wrapped(double a) { return a - kTurn * std::floor(a / kTurn); }
 
+constexpr double kBeside = 1e-6;  // [rad]: a node of the edge at a stitch is not between two
+
+/// [m], at an angle round the cut: linear between the two nodes beside it.
+double gap_at(const std::vector<EdgePlace>& edge, double angle) {
+  const auto after = std::find_if(edge.begin(), edge.end(), [&](const EdgePlace& p) { return kTurn * p.share > angle; });
+  const EdgePlace &next = after == edge.end() ? edge.front() : *after, &before = after == edge.begin() ? edge.back() : *(after - 1);
+  const double span = wrapped(kTurn * (next.share - before.share)), past = angle - kTurn * before.share + (after == edge.begin() ? kTurn : 0.0);
+  const double t = span > 0.0 ? std::clamp(past / span, 0.0, 1.0) : 0.0;
+  return (1.0 - t) * before.gap + t * next.gap;
+}
+
 }  // namespace
 
 LapseRules load_lapse_rules(const std::string& path) {
@@ -171,17 +182,14 @@ void find_join_lapses(const LapseRules& rules, const JoinReport& join, double ti
 
 void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, bool complete,
                      double time, std::vector<Lapse>& found) {
-  if (!scene.lumen || join.sector_gap.empty()) return;
+  if (!scene.lumen || join.edge.empty()) return;
   const CutLine cut(scene);
-  const double width = kTurn / static_cast<double>(join.sector_gap.size());
   std::vector<std::pair<double, int>> at;  // angle of each stitch, ascending
   const auto told = [&](int k) { return std::any_of(found.begin(), found.end(), [&](const Lapse& l) { return l.stitch == k && std::string_view(l.name) == "loose-knot"; }); };
   for (std::size_t k = 0; k < stitches.size(); ++k) {
     if (!stitches[k].joins) continue;
-    const double angle = wrapped(stitches[k].position / cut.radius());
-    at.emplace_back(angle, static_cast<int>(k));
-    const auto sector = std::min(static_cast<std::size_t>(angle / width), join.sector_gap.size() - 1);
-    const double gap = join.sector_gap[sector] / scene.thickness;
+    at.emplace_back(wrapped(stitches[k].position / cut.radius()), static_cast<int>(k));
+    const double gap = gap_at(join.edge, at.back().first) / scene.thickness;
     if (gap > rules.loose_gap && !told(static_cast<int>(k))) found.push_back({"loose-knot", static_cast<int>(k), time, gap, "thicknesses"});
   }
   std::sort(at.begin(), at.end());
@@ -189,8 +197,8 @@ void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const Tiss
     const double from = at[k].first, span = wrapped(at[(k + 1) % at.size()].first - from);
     if (!complete && span > rules.neighbours) continue;
     double widest = 0.0;
-    for (std::size_t s = 0; s < join.sector_gap.size(); ++s)
-      if (const double middle = wrapped(width * (static_cast<double>(s) + 0.5) - from); middle < span) widest = std::max(widest, join.sector_gap[s] / scene.thickness);
+    for (const EdgePlace& p : join.edge)
+      if (const double on = wrapped(kTurn * p.share - from); on > kBeside && on < span - kBeside) widest = std::max(widest, p.gap / scene.thickness);
     if (widest > rules.line_gap) found.push_back({"disrupted-line", at[k].second, time, widest, "thicknesses"});
   }
 }

@@ -88,7 +88,7 @@ void find_back_walls(const LapseRules& rules, const TissueObservation& tissue, c
 /// "thread-in-lumen", "edge-overlap".
 void find_join_lapses(const LapseRules& rules, const JoinReport& join, double time, std::vector<Lapse>& found);
 /// "loose-knot": the edges stand apart at a stitch that was to be tied (told once a stitch, whether by this or by its slack); "disrupted-line": they
-/// do between two neighbours. From the gaps of the sectors under pressure. Of stitches that join both edges only: a lone pass ties nothing.
+/// do between two neighbours. From the gaps of the edge's nodes under pressure: at a stitch between the two beside it, in a line the widest. Of stitches that join both edges only: a lone pass ties nothing.
 /// `complete`: no more stitches are to come.
 void find_gap_lapses(const LapseRules& rules, const JoinReport& join, const TissueDescription& scene, const std::vector<Stitch>& stitches, bool complete,
                      double time, std::vector<Lapse>& found);

@@ -112,12 +112,19 @@ bool let_blood_in(World& world, const JoinTestOptions& o) {
   return sound && world.state().tissue.wall.x.allFinite();
 }
 
+std::vector<EdgeGap> gaps_of(const VesselMesh& mesh, const Points& x) {
+  std::vector<EdgeGap> gaps;
+  for (std::size_t k = 0; k < mesh.edge_ring[0].size(); ++k) gaps.push_back(edge_gap(mesh, x, 0, 1, k));
+  return gaps;
+}
+
 void report_leak(const VesselMesh& mesh, const Points& x, const BloodOptions& blood, JoinTestReport& report) {
   const JoinLeak leak = find_leak(mesh, x, 0, 1, kJoinSectors, blood);
   for (std::size_t k = 0; k < report.flow.size(); ++k) {
     report.flow[k] = leak.sectors[k].flow;
     report.gap[k] = leak.sectors[k].gap;
   }
+  report.edge = gaps_of(mesh, x);
   report.leak = leak.flow;
   report.area = leak.area;
 }
@@ -137,9 +144,7 @@ double narrowing_at_join(const VesselMesh& mesh, const Points& x) {
 double flow_onwards(const VesselModel& vessel, const Points& x, const BloodOptions& blood) {
   LumenLine line(vessel.mesh);
   line.measure(x, blood.viscosity);
-  std::vector<EdgeGap> gaps;
-  for (std::size_t k = 0; k < vessel.mesh.edge_ring[0].size(); ++k) gaps.push_back(edge_gap(vessel.mesh, x, 0, 1, k));
-  return balance_join(line, gaps, vessel.circulation, blood).on;
+  return balance_join(line, gaps_of(vessel.mesh, x), vessel.circulation, blood).on;
 }
 
 /// The scene with a wall that is balanced to its tolerance in every step: what is measured is a rest, and there is no hurry.

@@ -11,7 +11,9 @@
 // flow onwards), drops, clotting. Deterministic. Test: join_test_test.
 
 #include <array>
+#include <vector>
 
+#include "physics/vessel_leak.h"
 #include "world/model.h"
 #include "world/state.h"
 
@@ -29,6 +31,7 @@ struct JoinTestOptions {
 struct JoinTestReport {
   std::array<double, kJoinSectors> flow{};   // [m3/s], from the leak of each sector, from where the vessel's angle is zero
   std::array<double, kJoinSectors> gap{};    // [m], mean
+  std::vector<EdgeGap> edge;   // at each node of the first cut edge
   double leak = 0.0;           // [m3/s]
   double area = 0.0;           // [m2], not sealed
   double narrowing = 0.0;      // [-], of the lumen near the join, 0 open to 1 closed

@@ -1,7 +1,8 @@
 // Tries ends of a demonstration without its beginning: `filum_rehearsal ROOT TASK SCRIPT NAME UNTIL [T ...]` runs a script to UNTIL [s] and, at each T, leaves a sleeping
 // copy of the whole process behind (fork) that listens at ./NAME_T (a pipe). `echo "go NAME SCRIPT UNTIL [T ...]" > FILE` wakes one: it goes on from there with another
 // script whose keys before T are the same, bit for bit as `filum run` would from the start, and writes to NAME.out; `quit` ends it. What the hands have seen and felt so
-// far is remembered and shown to the new script, which then stands where the old one stood. At each T and at UNTIL a line of JSON tells the stitches and knots there are.
+// far is remembered and shown to the new script, which then stands where the old one stood. At each T and at UNTIL a line of JSON tells the stitches and knots there are;
+// where the script has come to its end also the result that `filum run` would give.
 // A tool for those who write demonstrations (sew_eight.py); nothing of the product or its tests needs it.
 
 #include <signal.h>
@@ -14,17 +15,21 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "cli/security.h"
 #include "cli/setup.h"
 #include "devices/demonstrator.h"
 #include "haptics/haptic_loop.h"
 #include "haptics/scene_eyes.h"
+#include "training/cut_line.h"
 #include "training/stitch_knot.h"
+#include "training/task_session.h"
 #include "world/state.h"
 #include "world/world.h"
 
@@ -68,7 +73,7 @@ class Memory final : public Eyes {
 class Rehearsal {
  public:
   Rehearsal(const std::string& root, const std::string& task, const std::string& script, std::string name)
-      : world_(load_setup(root, task).model), eyes_(world_.observation(), world_.description()), memory_(eyes_), name_(std::move(name)) {
+      : Rehearsal(load_setup(root, task), std::move(name)) {
     take_script(script);
   }
 
@@ -78,6 +83,7 @@ class Rehearsal {
     while (world_.observation().time < until - 0.5 * dt && hands_->device(0).health().state != DeviceState::finished) {
       move_hands(static_cast<std::int64_t>((world_.observation().time + 0.5 * dt) * 1e6));
       world_.step(hands_->inputs().read());
+      task_.observe(world_.observation());
       tell_events();
       for (; next < stops.size() && world_.observation().time >= stops[next] - 0.5 * dt; ++next) {
         tell("stop");
@@ -85,9 +91,13 @@ class Rehearsal {
       }
     }
     tell("end");
+    if (hands_->device(0).health().state == DeviceState::finished) tell_result();
   }
 
  private:
+  Rehearsal(Setup setup, std::string name)
+      : world_(setup.model), task_(std::move(setup.task), world_.description()), eyes_(world_.observation(), world_.description()), memory_(eyes_), name_(std::move(name)) {}
+
   void take_script(const std::string& file) {
     auto demonstrator = std::make_unique<Demonstrator>(file);
     demonstrator->look_through(&memory_);
@@ -103,14 +113,14 @@ class Rehearsal {
     for (; next_us_ <= until_us; next_us_ += kTick) hands_->tick(next_us_);
   }
 
-  void tell_events() const {
-    const Observation& o = world_.observation();
-    for (int i = 0; i < o.n_events; ++i)
-      if (std::strcmp(o.events[static_cast<std::size_t>(i)].name, "solver-trouble") != 0)
-        std::printf("%.3f %s %g\n", o.time, o.events[static_cast<std::size_t>(i)].name, o.events[static_cast<std::size_t>(i)].value);
+  void tell_events() {
+    for (; told_ < task_.events().size(); ++told_) {
+      const TaskEvent& e = task_.events()[told_];
+      if (std::strcmp(e.name, "solver-trouble") != 0) std::printf("%.3f %s %g\n", e.time, e.name, e.value);
+    }
   }
 
-  /// Lengths in mm.
+  /// Lengths in mm, angles in degrees.
   void tell(const char* why) const {
     const Observation& o = world_.observation();
     char hash[17];
@@ -122,9 +132,21 @@ class Rehearsal {
       const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(k)];
       j["passes"].push_back({{"state", static_cast<int>(p.state)}, {"out", p.out}, {"side", p.side}, {"bites", {1e3 * p.bite_entry, 1e3 * p.bite_exit}}, {"depths", {p.entry_depth, p.exit_depth}}, {"torn", p.torn > 0.0}});
     }
-    for (const StitchKnot& k : knots_in_tissue(o)) j["knots"].push_back({{"class", k.knot.knot_class}, {"loop", 1e3 * k.loop()}, {"tail", 1e3 * k.tail}});
+    for (const StitchKnot& k : knots_in_tissue(o)) j["knots"].push_back({{"class", k.knot.knot_class}, {"loop", 1e3 * k.loop()}, {"tail", 1e3 * k.tail}, {"short", 1e3 * k.short_tail}});
+    if (const Result now = task_.finish(); now.needle && now.needle->has_tissue)
+      for (const Stitch& k : now.needle->stitches) j["stitches"].push_back({{"knot", k.knot}, {"angle", round_cut_ * k.position}, {"slack", 1e3 * k.slack}});
     std::printf("%s\n", j.dump().c_str());
     std::fflush(stdout);
+  }
+
+  /// As `filum run` ends: [ml/min], and thicknesses of the wall.
+  void tell_result() const {
+    const Result r = finish_with_security(task_, world_, [](double) { return true; });
+    nlohmann::ordered_json j = {{"why", "result"}, {"passed", r.passed}, {"points", r.total}, {"verdict", r.verdict}};
+    if (r.needle)
+      for (const Lapse& l : r.needle->lapses) j["lapses"].push_back({l.name, l.stitch, l.value});
+    if (r.needle && r.needle->join) j["join"] = {{"leak", 6e7 * r.needle->join->leak}, {"overlap", r.needle->join->overlap}, {"narrowing", r.needle->join->narrowing}};
+    std::printf("%s\n", j.dump().c_str());
   }
 
   /// The parent goes on; the child waits for orders and never returns.
@@ -164,11 +186,14 @@ class Rehearsal {
   }
 
   World world_;
+  TaskSession task_;
   SceneEyes eyes_;
   Memory memory_;
   std::unique_ptr<HapticLoop> hands_;
   std::int64_t next_us_ = 0;
   std::string name_;
+  std::size_t told_ = 0;   // events
+  double round_cut_ = world_.description().tissue.lumen ? 180.0 / std::numbers::pi / CutLine(world_.description().tissue).radius() : 0.0;  // [deg/m]
 };
 
 }  // namespace

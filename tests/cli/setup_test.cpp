@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "base/error.h"
 #include "world/model.h"
@@ -29,6 +32,41 @@ TEST(Setup, AnUnknownTaskIsAnsweredWithThoseThereAre) {
     EXPECT_EQ(error.value, "knot-sqare");
     EXPECT_NE(error.expected.find("knot-square"), std::string::npos);
   }
+}
+
+/// A copy of a task whose scene lacks a line.
+std::string refused(const std::string& task, const std::string& without) {
+  namespace fs = std::filesystem;
+  const fs::path root = fs::temp_directory_path() / ("filum-setup-" + std::to_string(getpid()));
+  fs::create_directories(root / "curricula");
+  fs::create_directory_symlink(fs::path(FILUM_SOURCE_DIR) / "models", root / "models");
+  for (const char* shared : {"lapses", "scales"}) fs::create_directory_symlink(fs::path(FILUM_SOURCE_DIR) / "curricula" / shared, root / "curricula" / shared);
+  fs::copy(fs::path(FILUM_SOURCE_DIR) / "curricula" / task, root / "curricula" / task);
+  const std::string scene = (root / "curricula" / task / "scene.yaml").string();
+  std::ifstream in(scene);
+  std::string kept;
+  for (std::string line; std::getline(in, line);)
+    if (line.find(without) == std::string::npos) kept += line + "\n";
+  std::ofstream(scene) << kept;
+  std::string said;
+  try {
+    load_setup(root.string(), task);
+  } catch (const InputError& error) {
+    said = error.what();
+  }
+  fs::remove_all(root);
+  return said;
+}
+
+TEST(Setup, ATaskThatWantsAToolWhichItsSceneLacksIsRefused) {
+  EXPECT_NE(refused("knot-square", "name: scissors").find("scissors among the instruments"), std::string::npos);
+  EXPECT_NE(refused("triangulation-120", "name: scissors").find("scissors among the instruments"), std::string::npos);
+  EXPECT_NE(refused("vessel-stitch", "name: needle-holder").find("one of the 1 instruments"), std::string::npos);
+}
+
+/// Listed tasks were there whose steps could not be made.
+TEST(Setup, EveryTaskHasTheToolsForItsSteps) {
+  for (const std::string& name : task_names(FILUM_SOURCE_DIR)) EXPECT_NO_THROW(load_setup(FILUM_SOURCE_DIR, name)) << name;
 }
 
 TEST(Setup, EveryTaskThatIsListedCanBeRead) {

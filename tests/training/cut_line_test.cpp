@@ -105,8 +105,7 @@ TEST(CutLine, LapsesOfStitchesEndToSide) {
   EXPECT_STREQ(found[0].name, "back-wall");
   EXPECT_EQ(found[0].stitch, 3);
   JoinReport join;
-  join.sector_gap.assign(8, 0.0);
-  join.sector_gap[1] = join.sector_gap[2] = 0.2e-3;  // on both sides of a quarter of the way round
+  for (int k = 0; k < 24; ++k) join.edge.push_back({k / 24.0, std::abs(k - 6) < 3 ? 0.2e-3 : 0.0});  // about a quarter of the way round
   found.clear();
   find_gap_lapses(rules, join, t, {stitches[0], stitches[1]}, false, 2.0, found);
   ASSERT_EQ(found.size(), 2u);

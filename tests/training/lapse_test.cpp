@@ -226,7 +226,7 @@ TEST(Lapse, ThreadLeftTooTightForItsBite) {
   EXPECT_NEAR(found[0].value, 125.0, 1e-9);
 }
 
-/// Stitches at 45 and 135 degrees (sectors 1 and 3 of eight), then the gaps of the sectors.
+/// Stitches at 67.5 and 157.5 degrees, the gaps of eight nodes 45 degrees apart, the first at 22.5.
 std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 135.0, bool joins = true, bool complete = false) {
   LapseRules rules;
   rules.loose_gap = 0.5;
@@ -239,7 +239,7 @@ std::vector<Lapse> gap_lapses(const std::vector<double>& gaps, double second = 1
   stitches[0].joins = true;
   stitches[1].joins = joins;
   JoinReport join;
-  for (const double g : gaps) join.sector_gap.push_back(g * kThickness);
+  for (std::size_t k = 0; k < gaps.size(); ++k) join.edge.push_back({(static_cast<double>(k) + 0.5) / static_cast<double>(gaps.size()), gaps[k] * kThickness});
   std::vector<Lapse> found;
   find_gap_lapses(rules, join, scene, stitches, complete, 3.0, found);
   return found;
@@ -404,7 +404,7 @@ TEST(Lapse, AKnotWithSlackIsLooseAndToldOnce) {
   TissueDescription scene = tube();
   scene.thickness = kThickness;
   JoinReport join;
-  join.sector_gap.assign(8, kThickness);
+  for (int k = 0; k < 8; ++k) join.edge.push_back({k / 8.0, kThickness});
   find_gap_lapses(rules, join, scene, {s}, false, 3.0, found);
   EXPECT_EQ(found.size(), 1u) << "its edges stand apart too";
 }
