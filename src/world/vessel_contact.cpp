@@ -122,7 +122,8 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
     if (in_tracks.hold(touch.arc) || parted(thread, touch.arc)) continue;
     const Vec3 x = at_arc(thread, touch.arc);
     const double height = (x - wall.position(w, touch.at)).dot(touch.normal);
-    const WallCrossing near = wall.nearest(w, x, 0.1e-3);
+    const Vec3 rub = t.force - t.force.dot(touch.normal) * touch.normal;
+    const WallCrossing near = wall.nearest(w, x + rub / stiffness, 0.1e-3);  // the bristle stays bent by what friction bears: what sticks does not creep
     const bool same_side = near.found && near.normal.dot(touch.normal) > 0.3 && height > -kShallow;  // deep within, the far wall may be nearest
     if (height >= 0.0 && !(same_side && near.fraction < 0.0)) {  // outside again
       come_out_[static_cast<std::size_t>(n_come_out_++)] = touch.arc;

@@ -4,7 +4,8 @@
 //
 // Thread: a sample (nodes, and places 0.1 mm apart between them) that crosses the surface inwards by its motion relative to the wall is remembered with the place
 // where it crossed (so that it cannot come out on the far side, however fast it goes) and is pushed back out along the normal there, with Coulomb friction in the
-// surface, until it is above that place again. Thread and wall move in turn: first the thread past the wall as it stands, then the wall past the thread. In the wall's turn
+// surface, until it is above that place again. The place follows what slides only: it is where x + f/k is nearest to the surface, f the friction borne by
+// bristles of stiffness k (return mapping), so that what sticks does not creep. Thread and wall move in turn: first the thread past the wall as it stands, then the wall past the thread. In the wall's turn
 // a sample x was, as the wall's point p next to it sees it, at x + h v(p). Where a track holds the thread nothing is looked for.
 // Jaws: spheres along them that push the faces they touch along their normals and drag them by friction, within the tissue's own step.
 // Neglects: thickness of the thread, rims thinner than 0.1 mm between two samples, jaws faster than their radius a step (75 mm/s).

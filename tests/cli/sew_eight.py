@@ -17,22 +17,27 @@ SECONDS = 91.0                                            # of the script, a sti
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
 FIRM = 0.45                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
 WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
-LOOP = 5.6                                                # [mm], most of a knot's loop
-
-# Lengths in mm, times in s. enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
-# edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
-# the cuts, and open again; let_go: where the short end is let go; first, firm [mN]: pulls at which the first and the second throw are drawn down
-# (with 8 a knot may spring open stitches later)
-DEFAULT = dict(enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=0.5, last=0.18, open=1.2, let_go=(0, -.25, -.4), first=8, firm=8)
+LOOP = 3.2                                                # [mm], most of a knot's loop
+PLACE = 18.0                                              # [degrees], most by which a stitch is beside its place
 
 
 def of_scene(field): return re.search(r'^%s: (.*)' % field, open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read(), re.M).group(1)
 
 
 STITCHES = int(of_scene('sutures').strip('"'))
+SLIDES = {8: (.35, .3, .45), 6: (.55, .5, .6)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
+
+# Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
+# edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
+# the cuts, and open again; let_go: where the short end is let go; first, firm [mN]: pulls at which the first and the second throw are drawn down
+# (with 8 a knot may spring open stitches later)
+DEFAULT = dict(aside=0, enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=SLIDES[0], last=0.18, open=1.2, let_go=(0, -.25, -.4), first=10, firm=30)
 
 
 def numbers(text): return [float(x) for x in re.findall(r'-?\d+\.?\d*', text)]
+
+
+TURNS = numbers(re.search(r'turns: \[(.*)\]', open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read()).group(1))   # [degrees]; at 0 the vessel's 90 degrees lie on top
 
 
 def read_template():
@@ -76,8 +81,8 @@ def drawn_down(key, p):
         if abs(key['t'] - t) < .01: key['until'] = '{ pull: "%g mN" }' % p[pull]
 
 
-def beside(key, edge, move):
-    if key['p']: key['p'] = [key['p'][0], key['p'][1] - EDGES[edge][1] + move[0], key['p'][2] - EDGES[edge][2] + move[1]]
+def beside(key, edge, move, aside):
+    if key['p']: key['p'] = [key['p'][0] + aside, key['p'][1] - EDGES[edge][1] + move[0], key['p'][2] - EDGES[edge][2] + move[1]]
 
 
 def holder(keys, p, relative):
@@ -87,7 +92,7 @@ def holder(keys, p, relative):
             edge = 0 if t < 11.45 else 1
             begins = abs(t - 6.7) < 0.05 or 11.45 < t < 11.6
             key['at'] = '{ edge: %d, bring: "0.50 mm" }' % edge if begins else None
-            beside(key, edge, p['enter'] if edge == 0 else p['leave'])
+            beside(key, edge, p['enter'] if edge == 0 else p['leave'], p['aside'])
         drawn_down(key, p)
         if abs(t - 40.293) < .01: key['buttons'] = 'cut'
         if abs(t - 41.293) < .01: key['t'] = 40.293 + p['slide']
@@ -101,7 +106,7 @@ def forceps(keys, p, relative):
         drawn_down(key, p)
         if relative and 14.7 < t < 20.6:
             if t < 14.9: key['at'] = '{ edge: 1 }'
-            beside(key, 1, p['press'])
+            beside(key, 1, p['press'], p['aside'])
         if relative and 21.1 < t < 21.2: key['at'] = '{}'
         if key['at'] and 'needle' in key['at'] and t < 25: key['at'] = '{ needle: "%.2f mm" }' % p['take']
     return keys
@@ -145,6 +150,12 @@ def told(name):
     except OSError: return []
 
 
+def failed(name):
+    """What is wrong with the whole once all is sewn, or None."""
+    result = next((s for s in told(name) if s['why'] == 'result'), None)
+    return '%s' % result['verdict'] if result and not result['passed'] else None
+
+
 def follow(name, check, given_up, pipe=None, order=None):
     """Sends the order and waits; the last state told and what is wrong with it, or None."""
     if os.path.exists(name + '.out'): os.remove(name + '.out')
@@ -156,8 +167,9 @@ def follow(name, check, given_up, pipe=None, order=None):
         states = [s for s in told(name) if s['why'] == 'stop']
         wrong = next((w for s in states[seen:] if (w := check(s))), None)
         seen = len(states)
-        if 'stitch-out-of-turn' in text: wrong = wrong or 'not in its turn'
+        if 'stitch-out-of-turn' in text: wrong = wrong or 'out of turn'
         if wrong is None and ended and not states: wrong = text[-300:]
+        if wrong is None and ended: wrong = failed(name)
         if wrong is None and given_up(): wrong = 'another was good'
         if wrong and not ended and (m := re.match(r'pid (\d+)', text)): subprocess.run(['kill', '-9', m.group(1)])
         if wrong or ended: return (states[-1] if states else None), wrong
@@ -173,13 +185,14 @@ def bites_wrong(k, s, tau):
     if any(p['state'] != 2 or p['torn'] for p in s['passes']): return 'torn, or not drawn through'
     if passes[0]['side'] == passes[1]['side'] or passes[0]['depths'][1] < .95 or passes[1]['depths'][0] < .95: return 'not through the wall'
     if max(passes[0]['bites'][0], passes[1]['bites'][1]) > WIDE: return 'wide %s' % [p['bites'] for p in passes]
-    return None
+    off = (s['stitches'][k]['angle'] - 90.0 + TURNS[k] + 180.0) % 360.0 - 180.0
+    return 'beside its place by %.1f' % off if abs(off) > PLACE else None
 
 
 def knot_wrong(k, s, tau):
     square = [n for n in s['knots'] if n['class'] == 'square']
     if any(p['state'] != 2 or p['torn'] for p in s['passes']): return 'torn'
-    if len(square) < k + (tau > 76): return 'knots %s' % [(n['class'], n['loop']) for n in s['knots']]
+    if len(square) < k + (tau > 76) or (tau > 80 and any(n['knot'] != 'square' for n in s['stitches'])): return 'knots %s' % [(n['class'], n['loop']) for n in s['knots']]
     if tau < 55 or 70 < tau < 76: return None if s['thread_held'][1] else 'short end not held'
     if 55 < tau < 70: return None if any(n['class'] == 'overhand' for n in s['knots']) else 'first throw open'
     return 'loose or long %s' % [(n['loop'], n['tail']) for n in square] if tau > 80 and (square[-1]['tail'] < FIRM or any(n['loop'] > LOOP or not 0.28 < n['tail'] < 1.6 for n in square)) else None
@@ -208,19 +221,20 @@ def bite_choices(random_, k):
     nearer = ((0, -.24), (.3, .1), .2), ((0, -.24), (.27, .1), .2), ((0, -.24), (.42, .1), .2), ((0, -.24), (.36, .1), .2)
     usual = (((0, -.24), (.2, .04), .18), ((-.03, -.24), (.22, .03), .18), ((.045, -.27), (.12, .06), .25), ((.03, -.31), (.2, -.05), .2),
              ((-.05, -.22), (.12, .04), .18), ((-.03, -.2), (.22, 0), .18), ((-.03, -.24), (.22, .03), .22), ((.045, -.16), (.14, .02), .18))
-    for enter, leave, press in usual[:2] + nearer + usual[2:] if k > 3 else usual: yield dict(enter=enter, leave=leave, press=(press, 0), take=3.7)
+    for enter, leave, press in usual[:2] if k > 2 else (): yield from (dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7) for aside in (0, .12, -.12, .2, -.2))
+    for enter, leave, press in nearer + usual[2:] if k > 3 else usual: yield dict(enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
-        yield dict(enter=(near(-.05, .09), near(-.36, -.2)), leave=(near(.06, .28) if k < 4 else near(.2, .5), near(-.06, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
+        yield dict(aside=random_.choice((0, .1, -.1, .2, -.2)) if k > 2 else 0, enter=(near(-.05, .09), near(-.36, -.2)), leave=(near(.06, .28) if k < 4 else near(.2, .5), near(-.06, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
 
 
 def knot_choices(random_, k):
-    """Late stitches lie between others that hold the edges apart: there the clamp slides farther."""
-    slides = (.8, .7, .9) if k > 4 else (.5, .6, .7)
-    yield from (dict(slide=slide, let_go=let_go, firm=firm) for let_go in ((0, -.3, -.45), (0, -.25, -.4), (0, -.4, -.6)) for slide in slides for firm in (12, 20))
+    """Before the ends of the last stitch are cut, the clamp may come nearer: it stays there when blood is let in."""
+    lasts = (.4, .18, .6) if k + 1 == STITCHES else (.18,)
+    yield from (dict(slide=slide, let_go=(0, -.3, -.45), first=first, firm=30, cut=1.3, last=last) for last in lasts for slide in SLIDES for first in (10, 9, 11))
     while True:
-        yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.45, .9), 2), first=random_.choice([8, 9, 10]),
-                   firm=random_.choice([12, 20, 30]))
+        yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.7, 1.5) * SLIDES[0], 2), first=random_.choice([9, 10, 11]), firm=30, cut=1.3,
+                   last=random_.choice(lasts))
 
 
 def sleeps(pipe):
@@ -252,7 +266,7 @@ def sew(state, file, random_, log):
             with open(file + '_first.out', 'w') as out: subprocess.run([REHEARSAL, ROOT, TASK, script, file + '_first', '38', '37.8'], stdout=out, check=True)
             bites = ({}, file + '_first_37.8')
         else:
-            bites = race(ways, try_bites, 8, lambda n, c, w: log(k, 'bites', n, c, w))
+            bites = race(ways, try_bites, 10, lambda n, c, w: log(k, 'bites', n, c, w))
         if not bites: continue
         def try_knot(n, choice, given_up):
             me, chosen = name('k', n), dict(bites[0], **choice)

@@ -136,6 +136,28 @@ TEST(VesselContact, AWallThatSlidesCarriesThreadByFriction) {
   EXPECT_LT(d.thread.x(2, 15) - start, 400e-6) << "of 700 um";
 }
 
+/// Pulled sideways with half of what friction bears, thread stays where it is for two seconds: it does not creep on by the bristles' bend in each step.
+TEST(VesselContact, ThreadThatFrictionHoldsDoesNotCreep) {
+  Draped d(kRadius + 1e-6);
+  d.spring = 0.02;
+  for (int k = 0; k < 500; ++k) {
+    for (Vec3& a : d.anchor) a.y() -= 2e-6;
+    d.step({});
+  }
+  const double start = d.thread.x(2, 15);
+  const auto slope = [&] {
+    const Vec3 pull = d.rod.tethers.list[0].force + d.rod.tethers.list[1].force;
+    return pull.z() / std::abs(pull.y());
+  };
+  for (int k = 0; k < 2000 && slope() < 0.5 * d.contact.friction; ++k) {
+    for (Vec3& a : d.anchor) a.z() += 1e-6;
+    d.step({});
+  }
+  for (int k = 0; k < 1000; ++k) d.step({});
+  EXPECT_NEAR(slope(), 0.5 * d.contact.friction, 0.1 * d.contact.friction);
+  EXPECT_NEAR(d.thread.x(2, 15), start, 2e-6);
+}
+
 /// At half a metre a second a wall of 0.1 mm, and the lumen behind it, go past in one step: the thread still is on the side where it was.
 TEST(VesselContact, AFastWallDoesNotTunnel) {
   VesselWall wall = tube();
