@@ -118,15 +118,15 @@ std::vector<EdgeGap> gaps_of(const VesselMesh& mesh, const Points& x) {
   return gaps;
 }
 
-void report_leak(const VesselMesh& mesh, const Points& x, const BloodOptions& blood, JoinTestReport& report) {
-  const JoinLeak leak = find_leak(mesh, x, 0, 1, kJoinSectors, blood);
-  for (std::size_t k = 0; k < report.flow.size(); ++k) {
-    report.flow[k] = leak.sectors[k].flow;
-    report.gap[k] = leak.sectors[k].gap;
+/// From report.edge.
+void report_leak(const BloodOptions& blood, JoinTestReport& report) {
+  std::array<LeakSector, kJoinSectors> sectors;
+  report.leak = leak_through(report.edge, sectors, blood);
+  for (std::size_t k = 0; k < sectors.size(); ++k) {
+    report.flow[k] = sectors[k].flow;
+    report.gap[k] = sectors[k].gap;
+    report.area += sectors[k].area;
   }
-  report.edge = gaps_of(mesh, x);
-  report.leak = leak.flow;
-  report.area = leak.area;
 }
 
 double narrowing_at_join(const VesselMesh& mesh, const Points& x) {
@@ -141,10 +141,10 @@ double narrowing_at_join(const VesselMesh& mesh, const Points& x) {
 }
 
 /// As the trainee sees it with both clamps off (blood_flow.h).
-double flow_onwards(const VesselModel& vessel, const Points& x, const BloodOptions& blood) {
+double flow_onwards(const VesselModel& vessel, const Points& x, const std::vector<EdgeGap>& gaps, const BloodOptions& blood) {
   LumenLine line(vessel.mesh);
   line.measure(x, blood.viscosity);
-  return balance_join(line, gaps_of(vessel.mesh, x), vessel.circulation, blood).on;
+  return balance_join(line, gaps, vessel.circulation, blood).on;
 }
 
 /// The scene with a wall that is balanced to its tolerance in every step: what is measured is a rest, and there is no hurry.
@@ -208,9 +208,10 @@ JoinTestReport join_test(const Model& model, const State& state, const JoinTestO
   BloodOptions blood;
   blood.pressure = o.pressure;
   blood.seal = o.seal;
-  report_leak(mesh, x, blood, report);
+  report.edge = gaps_of(mesh, x);
+  report_leak(blood, report);
   report.narrowing = narrowing_at_join(mesh, x);
-  report.through = flow_onwards(*model.vessel, x, blood);
+  report.through = flow_onwards(*model.vessel, x, report.edge, blood);
   report.patent = is_patent(report.narrowing, report.through, model.vessel->circulation);
   return report;
 }

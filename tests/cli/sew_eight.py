@@ -27,8 +27,8 @@ def of_scene(field): return re.search(r'^%s: (.*)' % field, open('%s/curricula/%
 STITCHES = int(of_scene('sutures').strip('"'))
 SLIDES = {8: (.35, .3, .45), 6: (.55, .5, .6)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
 
-# Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave: of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second
-# edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
+# Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave:
+# of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
 # the cuts, and open again; let_go: where the short end is let go; first, firm [mN]: pulls at which the first and the second throw are drawn down
 # (with 8 a knot may spring open stitches later)
 DEFAULT = dict(aside=0, enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=SLIDES[0], last=0.18, open=1.2, let_go=(0, -.25, -.4), first=10, firm=30)
