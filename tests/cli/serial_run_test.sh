@@ -1,7 +1,7 @@
 #!/bin/bash
 # The main job on real input: frames of hand pose and grip through a pseudo terminal (`--input serial:PATH`), recorded; then the recording's
 # device samples through the replay device, and its steps again bit for bit. Usage: serial_run_test.sh FILUM FEEDER ROOT
-# A hand takes the thread and lifts it. With FILUM_WHOLE_SERIAL=1 the poses of a whole run of the demonstration are sent instead (a wire has no eyes to
+# A hand takes the thread and lifts it, unhurriedly: a wire does not wait for a trainer that another process holds up. With FILUM_WHOLE_SERIAL=1 the poses of a whole run of the demonstration are sent instead (a wire has no eyes to
 # look for the thread with), and must end in a square knot: for an idle machine only, since hands on a wire do not wait for a trainer that falls behind.
 filum=$1 feeder=$2 root=$3
 work=$(mktemp -d)
@@ -25,15 +25,16 @@ tools:
     keys:
       - { t: "0 s", p: ["-12 mm", "0 mm", "6 mm"], handle: [-0.6, -0.5, 0.7], opening: [0, 1, 0.7], grip: "12 deg" }
       - { t: "700 ms", p: ["-11.5 mm", "0.4 mm", "-0.5 mm"] }
-      - { t: "1 s", p: ["-11.5 mm", "0.4 mm", "-0.5 mm"], grip: "-5 deg" }
-      - { t: "2 s", p: ["-10 mm", "1 mm", "3 mm"] }
+      - { t: "1.2 s", p: ["-11.5 mm", "0.4 mm", "-0.5 mm"] }
+      - { t: "2.2 s", p: ["-11.5 mm", "0.4 mm", "-0.5 mm"], grip: "-5 deg" }
+      - { t: "3 s", p: ["-10 mm", "1 mm", "3 mm"] }
   - tool: 1
     keys:
       - { t: "0 s", p: ["12 mm", "0 mm", "8 mm"], handle: [0.6, -0.5, 0.7], opening: [0, 1, 0.7], grip: "12 deg" }
-      - { t: "2 s", p: ["11 mm", "0 mm", "7 mm"] }
+      - { t: "3 s", p: ["11 mm", "0 mm", "7 mm"] }
 YAML
 fi
-longest=3
+longest=4
 [ "$whole" -eq 0 ] || longest=60
 
 # field FILE NAME: a value of the JSON document.
