@@ -196,7 +196,11 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
     const std::string_view name = o.events[static_cast<std::size_t>(k)].name;
     report_.takes += name == "needle-taken" ? 1 : 0;
     report_.drops += name == "needle-dropped" ? 1 : 0;
+    report_.handling.folds += name == "tissue-taken" ? 1 : 0;
+    report_.handling.walls += name == "wall-taken" ? 1 : 0;
+    report_.handling.slips += name == "tissue-slipped" ? 1 : 0;
   }
+  for (const GripObservation& g : o.tissue.grips) report_.handling.pull = std::max(report_.handling.pull, g.pull);
   blood_.observe(o);
   time_ = o.time;
   keep_times(o.tissue, o.time);

@@ -25,6 +25,12 @@
 
 namespace filum {
 
+/// How tissue was held with instruments.
+struct HandlingReport {
+  int folds = 0, walls = 0, slips = 0;   // times it was taken by its adventitia, through its thickness; slid from between the pads
+  double pull = 0.0;                     // [N], the most
+};
+
 /// At the end of a run. SI units; NaN where there was nothing to measure.
 struct NeedleReport {
   int takes = 0, drops = 0;
@@ -35,6 +41,7 @@ struct NeedleReport {
   bool has_tissue = false;
   double thickness = 0.0;                // [m]
   double peak_force = 0.0;               // [N], largest pull on the tissue
+  HandlingReport handling;
   std::vector<Stitch> stitches;
   std::vector<double> spacings;          // [m], between neighbours
   std::vector<Lapse> lapses;

@@ -19,6 +19,8 @@ std::vector<PatencyFactor> patency_factors(const NeedleReport& r) {
           {"thread-in-lumen", "Thread in the lumen", 1e3 * j.thread_inside, "mm", count_of(r.lapses, "thread-in-lumen") > 0.0, "Anastomosis Lapse Index"},
           {"narrowing", "Narrowing of the lumen", 100.0 * j.narrowing, "%", j.narrowing > kNarrow, "uneven lumens lower patency (Esanu 2026); threshold 25 % [P]"},
           {"edge-overlap", "Edges past each other or rolled inward", j.overlap, "thicknesses", count_of(r.lapses, "edge-overlap") > 0.0, "Anastomosis Lapse Index: media and adventitia in the stream"},
+          {"wall-grasped", "Wall grasped through its thickness", static_cast<double>(r.handling.walls), "-", r.handling.walls > 0,
+           "Moore: the intima is injured from 5 kPa of added stress (abstract), 1.5 mN on a tip's contact; adventitia may be held"},
           lapse_factor(r, "wall-tear", "Stitches that tore the wall", "Anastomosis Lapse Index"),
           lapse_factor(r, "too-tight", "Stitches too tight", "tight stitches, necrosis of the media (histology of human vessels)"),
           lapse_factor(r, "partial-thickness", "Stitches without the intima", "Anastomosis Lapse Index"),

@@ -217,6 +217,7 @@ void add_needle(const NeedleReport& n, Json& json) {
   json["lapse_rules"] = n.rules;
   if (n.scale) json["scale"] = scale_json(*n.scale, n);
   json["tissue_soundness"] = finite(n.soundness);
+  json["handling"] = {{"adventitia", n.handling.folds}, {"through_wall", n.handling.walls}, {"slipped", n.handling.slips}, {"most_pull_n", finite(n.handling.pull)}};
   if (n.join) json["leak"] = leak_json(*n.join);
   if (n.clamps) json["clamps"] = clamps_json(*n.clamps);
   if (n.milking) json["milking"] = milking_json(*n.milking);

@@ -109,6 +109,10 @@ std::vector<TaskWarning> TaskSession::warnings() const {
     const std::string& name = scene_.tools[static_cast<std::size_t>(t)].name;
     list.push_back({"warn", "grip", "Squeezing hard with " + name + "."});
   }
+  for (int t = 0; t < last_.n_tools && scene_.tissue.lumen; ++t) {
+    if (!last_.tissue.grips[static_cast<std::size_t>(t)].through) continue;
+    list.push_back({"warn", "wall-held", scene_.tools[static_cast<std::size_t>(t)].name + " holds the wall through its thickness: that harms the intima. Take the adventitia only, or press with open tips."});
+  }
   const std::string& seen = recogniser_.knot_class();
   const bool accepted = std::find(task_.accept.begin(), task_.accept.end(), seen) != task_.accept.end();
   if (retraction_)

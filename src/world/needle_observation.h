@@ -71,6 +71,13 @@ struct BloodObservation {
   double lumen_length = 0.0;              // [m]
 };
 
+/// What a tool holds of the tissue.
+struct GripObservation {
+  bool held = false;
+  bool through = false;                   // the wall through its thickness, not its adventitia alone
+  double pull = 0.0;                      // [N], of the tissue on the tool
+};
+
 struct TissueObservation {
   int n = 0;                              // vertices of the surface; 0: no tissue
   Points positions;                       // [m], 3 x n, frame W
@@ -78,6 +85,7 @@ struct TissueObservation {
   std::array<PassObservation, kMaxPasses> passes;
   double point_force = 0.0;               // [N], of the tissue on the needle's point
   double soundness = 1.0;                 // of the weakest element: 1 whole, 0 gone
+  std::array<GripObservation, 3> grips;   // of each tool
   BloodObservation blood;
 };
 

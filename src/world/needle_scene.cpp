@@ -12,6 +12,7 @@ namespace {
 constexpr double kSwage = 2e4;         // [N/m], of the joint between needle and thread
 constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
 constexpr double kApart = 20e-6;        // [m], between thread and needle: at kSwage 0.4 N, as much as a thread of 10-0 bears
+constexpr double kClosing = 1e-3;       // [rad/s], of jaws that close
 constexpr int kMostRepeats = 4;         // of a step that ends with them apart
 
 void say(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
@@ -24,6 +25,7 @@ NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle
   options_.dt = model.step.dt;
   options_.gravity = model.step.gravity;
   options_.sheet = model.description.floor_height;
+  thread_between_.reserve(kGraspPointsPerTool);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].pads = model.instruments[i].pads;
   if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape(), model.description.capacity);
 }
@@ -65,7 +67,7 @@ void NeedleScene::limit_jaws(const State& s, std::vector<InstrumentCommand>& com
     if (tool.kind == "scissors") continue;
     const double reach = std::max(2.0 * body_.shape().wire_radius, 0.5 * tool.jaw_length * s.instruments[i].angle);
     const bool wire = s.needle.grips[i].held != 0 || body_.between(static_cast<int>(i), reach, s.needle);
-    const double stop = wire ? stop_angle(tool) : tissue_ ? tissue_->stop_angle(s.tissue, tool, s.instruments[i]) : 0.0;
+    const double stop = wire ? stop_angle(tool) : tissue_ ? tissue_->stop_angle(s.tissue, static_cast<int>(i), {tool, s.instruments[i]}) : 0.0;
     InstrumentCommand& c = commands[i];
     const double command = c.follow ? c.grip_angle : s.instruments[i].grip_command;
     if (command >= stop || stop == 0.0) continue;
@@ -73,6 +75,18 @@ void NeedleScene::limit_jaws(const State& s, std::vector<InstrumentCommand>& com
     c.has_grip_force = true;
     c.grip_angle = stop;
   }
+}
+
+/// Jaws that close, hold nothing and have neither wire nor thread between them: these they take.
+bool NeedleScene::may_take_tissue(const State& s, int tool) noexcept {
+  const auto i = static_cast<std::size_t>(tool);
+  const InstrumentState& in = s.instruments[i];
+  const double half_gap = 0.5 * model_.instruments[i].jaw_length * in.angle;
+  if (s.armed[i] == 0 || s.needle.grips[i].held != 0 || in.angle_rate > -kClosing) return false;
+  if (std::any_of(s.memory.grasps.begin(), s.memory.grasps.end(), [&](const GraspPoint& p) { return p.tool == tool; })) return false;
+  if (body_.between(tool, std::max(2.0 * body_.shape().wire_radius, half_gap), s.needle)) return false;
+  thread_between_.clear();
+  return grasp_between(model_.instruments[i].pads, in.X_WT, tool, s.thread, half_gap + 4.0 * model_.thread.radius, thread_between_) == 0;
 }
 
 void NeedleScene::meet_tools(State& s, const std::vector<ObstacleBody>& from, Observation& o) noexcept {
@@ -97,6 +111,7 @@ void NeedleScene::meet_tools(State& s, const std::vector<ObstacleBody>& from, Ob
       say(o, "needle-taken", tool, grip.arc / body_.shape().length(), "-");
     }
     t.bars_touch = grip.held == 0;
+    if (tissue_ && p.kind != "scissors") tissue_->meet_jaws(s.tissue, tool, {p, in}, may_take_tissue(s, tool), o);
   }
 }
 
@@ -173,7 +188,7 @@ void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexc
   if (!summary_.sound || summary_.residual > kTroubleForce) say(o, "solver-trouble", -1, summary_.residual, "N");
   if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments, o);
   if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.thread, body_.tethers, rod.tethers.list, o);
-  if (tissue_) tissue_->feel(s.force, s.torque);
+  if (tissue_) tissue_->feel(s.tissue, model_.instruments, s.instruments, s.force, s.torque);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {
     s.force[i] += body_.tools[i].force;
     s.torque[i] += body_.tools[i].torque;

@@ -46,6 +46,7 @@ class NeedleScene {
   void hold_swage(const State& s, ImplicitRod& rod, const Vec3& load) noexcept;
   void follow(State& s) noexcept;
   double apart(const State& s) const noexcept;
+  bool may_take_tissue(const State& s, int tool) noexcept;
   bool misled(const State& s, const ImplicitRod& rod) const noexcept;
   void keep(const State& s) noexcept;
   void take_back(State& s) const noexcept;
@@ -60,6 +61,7 @@ class NeedleScene {
   RodState thread_before_;               // of the present step, for when it is made again
   RodMemory memory_before_;
   NeedleState needle_before_;
+  std::vector<GraspPoint> thread_between_;  // jaws, at most so many as they hold
 };
 
 }  // namespace filum

@@ -146,6 +146,7 @@ void read_stumps(const std::string& root, const YamlNode& node, const std::strin
   s.edge_grading = node.number("grading", Range::between(0.2, 5.0));
   v.layers = preset.layers;
   v.thickness = s.thickness;
+  v.adventitia = v.layers.back().name == "adventitia";
   v.wall.density = preset.wall.density;
   v.wall.damping = preset.wall.damping;
   v.clamp.gap = node.quantity("gap", "mm", Range::between(0.0, kMostGap));

@@ -13,6 +13,10 @@ constexpr int kFalling = 125;    // steps in which an empty vein loses its press
 constexpr double kLying = 3e-4;  // [m/s], of a wall that lies
 constexpr int kSettling = 500;  // steps at most until the tissue stands still at the start
 
+void say(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
+  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
+}
+
 PassObservation::State state_of(const NeedleTrack& t) noexcept {
   if (t.ended == 2) return PassObservation::State::torn;
   if (t.ended == 1) return PassObservation::State::pulled_out;
@@ -23,6 +27,20 @@ PassObservation::State state_of(const NeedleTrack& t) noexcept {
 std::uint64_t hash_point(const WallPoint& p, std::uint64_t h) noexcept {
   const std::array<double, 4> row = {static_cast<double>(p.element), p.local.x(), p.local.y(), p.local.z()};
   return hash_bytes(row.data(), sizeof(row), h);
+}
+
+/// Of a tool that holds tissue.
+std::uint64_t hash_grip(const WallGrip& g, std::uint64_t h) noexcept {
+  const std::array<double, 5> row = {static_cast<double>(g.n), static_cast<double>(g.through), g.stop, g.leave, g.pull};
+  h = hash_bytes(row.data(), sizeof(row), h);
+  for (int k = 0; k < g.n; ++k) {
+    const WallGripPlace& place = g.places[static_cast<std::size_t>(k)];
+    for (std::size_t side = 0; side < 2; ++side) {
+      h = hash_bytes(place.offset_T[side].data(), 3 * sizeof(double), h);
+      h = hash_point(place.at[side], hash_bytes(place.slid_T[side].data(), 3 * sizeof(double), h));
+    }
+  }
+  return h;
 }
 
 std::uint64_t hash_blood(const BloodState& b, std::uint64_t h) noexcept {
@@ -92,15 +110,12 @@ void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observatio
   blood_->hear(s.blood, buttons, o);
   if (s.blood.flowing()) return;
   const std::uint32_t pressed = buttons & ~c.down, let_go = c.down & ~buttons;
-  const auto say = [&](const char* name, double value, const char* unit) {
-    if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, -1, value, unit};
-  };
   if ((pressed & kNext) != 0) {
     c.over = (c.over + 1) % static_cast<std::int32_t>(model_.turns.size());
-    say("clamp-turned", model_.turns[static_cast<std::size_t>(c.over)], "rad");
+    say(o, "clamp-turned", -1, model_.turns[static_cast<std::size_t>(c.over)], "rad");
   }
   if ((pressed & kCut) != 0) c.closing = c.closing != 0 ? 0 : 1;
-  if ((let_go & kCut) != 0) say("clamp-slid", c.gap, "m");
+  if ((let_go & kCut) != 0) say(o, "clamp-slid", -1, c.gap, "m");
   c.down = buttons & (kCut | kNext);
   DoubleClamp now = model_.clamp;
   now.gap = c.gap;
@@ -124,27 +139,54 @@ void VesselScene::move_clamp(const VesselState& s) noexcept {
   for (int part = 0; part < 2; ++part) wall_.place_clamp(part, motion[static_cast<std::size_t>(part)]);
 }
 
+double VesselScene::stop_angle(const VesselState& s, int tool, const GrippingTool& jaws) const noexcept {
+  const WallGrip& grip = s.grips[static_cast<std::size_t>(tool)];
+  if (grip.n > 0) return grip.stop;
+  return blood_ ? blood_->stop_angle(s.wall, jaws.parameters, jaws.state) : 0.0;
+}
+
+void VesselScene::meet_jaws(VesselState& s, int tool, const GrippingTool& jaws, bool may_take, Observation& o) const noexcept {
+  WallGrip& grip = s.grips[static_cast<std::size_t>(tool)];
+  if (grip.n > 0) {
+    if (jaws.state.angle <= grip.leave) return;
+    say(o, "tissue-released", tool, grip.pull, "N");
+    grip = {};
+    return;
+  }
+  if (!may_take || (blood_ && blood_->stop_angle(s.wall, jaws.parameters, jaws.state) > 0.0)) return;  // a vessel is milked, not grasped
+  if (take_wall(wall_, s.wall, jaws, {model_.thickness, model_.adventitia}, grip)) say(o, grip.through != 0 ? "wall-taken" : "tissue-taken", tool, 0.0, "-");
+}
+
 void VesselScene::press(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, Observation& o) noexcept {
   if (blood_) blood_->step(s, tools, states, o);
   contact_.press(wall_, s.wall, tools, states);
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    WallGrip& grip = s.grips[i];
+    if (grip.n == 0) continue;
+    pull_wall(wall_, s.wall, {tools[i], states[i]}, grip);
+    if (grip.n == 0) say(o, "tissue-slipped", static_cast<int>(i), states[i].grip_force, "N");
+  }
 }
 
-void VesselScene::feel(std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept { contact_.feel(wall_, force, torque); }
+void VesselScene::feel(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, std::vector<Vec3>& force,
+                       std::vector<Vec3>& torque) const noexcept {
+  contact_.feel(wall_, force, torque);
+  for (std::size_t i = 0; i < tools.size(); ++i)
+    if (s.grips[i].n > 0) feel_wall(wall_, s.wall, {tools[i], states[i]}, s.grips[i], force[i], torque[i]);
+}
 
 void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
                        const std::vector<RodTether>& on_thread, Observation& o) noexcept {
   std::array<TrackEvent, 8> events;
   const int n = tracks_.follow(wall_, s.wall, s.tracks, X_WN, &thread, model_.wall.dt, on_needle, on_thread, events.data(), static_cast<int>(events.size()));
-  for (int k = 0; k < n && o.n_events < static_cast<int>(o.events.size()); ++k)
-    o.events[static_cast<std::size_t>(o.n_events++)] = {events[static_cast<std::size_t>(k)].name, -1, events[static_cast<std::size_t>(k)].value, "N"};
+  for (int k = 0; k < n; ++k) say(o, events[static_cast<std::size_t>(k)].name, -1, events[static_cast<std::size_t>(k)].value, "N");
   contact_.follow(wall_, s.wall, s.touches, s.tracks, thread, on_thread);
   for (int part = 0; part < std::min(2, wall_.n_parts()); ++part) wall_.set_pressure(part, s.pressure[static_cast<std::size_t>(part)]);
   move_clamp(s);
   wall_.meet(s.wall);
   tracks_.mark_point(wall_, s.wall, s.tracks);
   const WallSummary summary = wall_.step(s.wall);
-  if (!summary.sound && o.n_events < static_cast<int>(o.events.size()))
-    o.events[static_cast<std::size_t>(o.n_events++)] = {"solver-trouble", -1, summary.residual, "N"};
+  if (!summary.sound) say(o, "solver-trouble", -1, summary.residual, "N");
   wall_.refit(s.wall);
   tracks_.carry_point(wall_, s.wall, s.tracks);
   contact_.overtake(wall_, s.wall, s.touches, s.tracks, thread);
@@ -156,6 +198,7 @@ void VesselScene::observe(const VesselState& s, const RodState& thread, Observat
   t.n_passes = s.tracks.n;
   t.point_force = s.tracks.point.force;
   t.soundness = *std::min_element(s.wall.soundness.begin(), s.wall.soundness.end());
+  for (std::size_t i = 0; i < s.grips.size(); ++i) t.grips[i] = {s.grips[i].n > 0, s.grips[i].through != 0, s.grips[i].pull};
   if (blood_) blood_->observe(s, t.blood);
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   for (int k = 0; k < s.tracks.n; ++k) {
@@ -213,6 +256,8 @@ std::uint64_t hash_vessel(const VesselState& s) noexcept {
   const std::array<double, 5> clamp = {c.gap, c.turn, static_cast<double>(c.over), static_cast<double>(c.closing), static_cast<double>(c.down)};
   h = hash_bytes(clamp.data(), sizeof(clamp), h);
   if (s.blood.flowing()) h = hash_blood(s.blood, h);  // else as it was before there was any
+  for (std::size_t i = 0; i < s.grips.size(); ++i)
+    if (s.grips[i].n > 0) h = hash_grip(s.grips[i], h + i);  // likewise
   const std::array<double, 9> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,
                                      t.point_before.x(), t.point_before.y(), t.point_before.z(), s.pressure[0], s.pressure[1]};
   return hash_point(t.point.at, hash_bytes(row.data(), sizeof(row), h));

@@ -5,6 +5,7 @@
 
 #include "physics/implicit_rod.h"
 #include "physics/needle.h"
+#include "physics/wall_grasp.h"
 #include "world/observation.h"
 #include "world/blood_flow.h"
 #include "world/vessel_contact.h"
@@ -26,14 +27,15 @@ class VesselScene {
   void handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept;
   /// The tips of this tool have just closed: true if they have opened a clamp.
   bool open_clamp(VesselState& s, int tool, const Vec3& tip, Observation& o) const noexcept { return blood_ && blood_->open_with(s, tool, tip, o); }
-  /// [rad], at which jaws that have the vessel between them press it flat; 0 where they do not.
-  double stop_angle(const VesselState& s, const InstrumentParameters& tool, const InstrumentState& state) const noexcept {
-    return blood_ ? blood_->stop_angle(s.wall, tool, state) : 0.0;
-  }
+  /// [rad], at which jaws rest on the tissue they hold, or press a vessel flat that they have between them; 0 where they do not.
+  double stop_angle(const VesselState& s, int tool, const GrippingTool& jaws) const noexcept;
+  /// Jaws that `may_take` hold the tissue between them; opened they let it go.
+  void meet_jaws(VesselState& s, int tool, const GrippingTool& jaws, bool may_take, Observation& o) const noexcept;
   /// Jaws against the tissue, and blood. Before step().
   void press(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, Observation& o) noexcept;
   /// After step(): adds to the forces on the jaws.
-  void feel(std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
+  void feel(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, std::vector<Vec3>& force,
+            std::vector<Vec3>& torque) const noexcept;
   /// After needle and thread have moved: loads, punctures and tears, then the tissue's own step.
   void step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
             const std::vector<RodTether>& on_thread, Observation& o) noexcept;

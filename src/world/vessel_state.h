@@ -6,6 +6,7 @@
 
 #include "physics/track_state.h"
 #include "physics/vessel_flow.h"
+#include "physics/wall_grip.h"
 
 namespace filum {
 
@@ -51,6 +52,7 @@ struct VesselState {
   TouchState touches;
   ClampState clamp;
   BloodState blood;
+  std::array<WallGrip, 3> grips;       // of each tool
   std::array<double, 2> pressure{};  // [Pa], transmural, of each stump
 };
 

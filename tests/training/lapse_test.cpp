@@ -125,7 +125,7 @@ TEST(Lapse, HalfAStitchHasOneBite) {
 
 TEST(Lapse, RulesComeFromAFileThatSaysWhereFrom) {
   for (const char* name : {"card", "vessel", "anastomosis"}) {
-    const LapseRules r = load_lapse_rules(std::string(FILUM_SOURCE_DIR) + "/curricula/lapses/" + name + ".yaml");
+    const LapseRules r = load_lapse_rules(std::string(FILUM_SOURCE_DIR "/curricula/lapses/").append(name).append(".yaml"));
     EXPECT_FALSE(r.source.empty());
     EXPECT_NEAR(r.oblique, 0.349, 1e-3);
     const bool tied = std::string(name) == "anastomosis";
@@ -373,7 +373,7 @@ TEST(Lapse, ALapseIsShownWhenItCanBeSeen) {
 
 TEST(Lapse, TheRulesSayWhatIsCritical) {
   for (const char* name : {"vessel", "anastomosis", "vein", "end-to-side", "continuous"}) {
-    const LapseRules rules = load_lapse_rules(std::string(FILUM_SOURCE_DIR) + "/curricula/lapses/" + name + ".yaml");
+    const LapseRules rules = load_lapse_rules(std::string(FILUM_SOURCE_DIR "/curricula/lapses/").append(name).append(".yaml"));
     std::vector<Lapse> found = {{"wide-bite", 0, 1.0, 4.0, "thicknesses"}, {"back-wall", 1, 2.0, 170.0, "deg"}};
     mark_critical(rules, found);
     EXPECT_FALSE(found[0].critical) << name;

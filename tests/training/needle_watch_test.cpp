@@ -175,10 +175,12 @@ TEST(NeedleWatch, CountsTakesDropsAndWholeStitches) {
   NeedleWatch w(task, scene);
   std::vector<TaskEvent> events;
   Observation o = field();
-  o.n_events = 2;
-  o.events[0].name = "needle-taken";
-  o.events[1].name = "needle-dropped";
+  o.n_events = 6;
+  const char* names[] = {"needle-taken", "needle-dropped", "tissue-taken", "tissue-taken", "wall-taken", "tissue-slipped"};
+  for (std::size_t k = 0; k < 6; ++k) o.events[k].name = names[k];
+  o.tissue.grips[1].pull = 2e-3;
   w.observe(o, kDt, true, events);
+  o.tissue.grips[1].pull = 1e-3;
   o.n_events = 0;
   o.tissue.n_passes = 2;
   for (int k = 0; k < 2; ++k) {
@@ -203,6 +205,10 @@ TEST(NeedleWatch, CountsTakesDropsAndWholeStitches) {
   const NeedleReport r = w.report();
   EXPECT_EQ(r.takes, 1);
   EXPECT_EQ(r.drops, 1);
+  EXPECT_EQ(r.handling.folds, 2);
+  EXPECT_EQ(r.handling.walls, 1);
+  EXPECT_EQ(r.handling.slips, 1);
+  EXPECT_EQ(r.handling.pull, 2e-3);
   ASSERT_EQ(r.stitches.size(), 1u);
   EXPECT_TRUE(r.lapses.empty());
   EXPECT_NEAR(needle_value(Measure::bite_widest, r), 2.0, 1e-9);

@@ -24,10 +24,13 @@ TEST(PatencyFactors, AreNamedWithTheirNumberAndNothingIsConcluded) {
     EXPECT_STRNE(f.source, "") << f.name;
   }
   r.join->narrowing = 0.4;
+  r.handling.walls = 2;
   r.lapses = {{"back-wall", 1, 3.0, 120.0, "deg"}, {"back-wall", 2, 4.0, 130.0, "deg"}, {"wide-bite", 2, 4.0, 5.0, "thicknesses"}};
   const auto all = patency_factors(r);
   EXPECT_TRUE(of(all, "back-wall").raised);
   EXPECT_EQ(of(all, "back-wall").value, 2.0);
+  EXPECT_TRUE(of(all, "wall-grasped").raised);
+  EXPECT_EQ(of(all, "wall-grasped").value, 2.0);
   EXPECT_TRUE(of(all, "narrowing").raised);
   EXPECT_DOUBLE_EQ(of(all, "narrowing").value, 40.0);
   EXPECT_FALSE(of(all, "too-tight").raised);

@@ -159,6 +159,22 @@ TEST(TaskSession, ScoredTimeStandsStillWhileAnInputIsSilent) {
   EXPECT_FALSE(warns(run.session.status(), "input-lost"));
 }
 
+TEST(TaskSession, WarnsWhileAVesselsWallIsHeldThroughItsThickness) {
+  SceneDescription vessel = knot_scene();
+  vessel.tissue.lumen = true;
+  const auto warned = [](const SceneDescription& scene, const GripObservation& grip) {
+    TaskSession session(task_named("artery-stitch"), scene);
+    Scene shown;
+    shown.now().tissue.grips[1] = grip;
+    session.observe(shown.next());
+    return warns(session.status(), "wall-held");
+  };
+  EXPECT_TRUE(warned(vessel, {true, true, 1e-3}));
+  EXPECT_FALSE(warned(vessel, {true, false, 1e-3})) << "adventitia may be held";
+  EXPECT_FALSE(warned(vessel, {}));
+  EXPECT_FALSE(warned(knot_scene(), {true, true, 1e-3})) << "a card has no intima";
+}
+
 TEST(TaskSession, HintsAndWarningsFollowTheTrainee) {
   Tie run("knot-square", {3});
   TaskStatus status = run.session.status();

@@ -1,5 +1,5 @@
 import { RatePage } from "@viewer/ui/rate_page";
-import { both, clampSection, joinSection, replayAt, StitchList, stitchSection, tails } from "@viewer/ui/stitch_panel";
+import { both, clampSection, handlingSection, joinSection, replayAt, StitchList, stitchSection, tails } from "@viewer/ui/stitch_panel";
 import { cividis } from "@viewer/scene/palette";
 import type { App } from "@viewer/app";
 import type { Leak, Result, Stitch } from "@viewer/messages";
@@ -40,6 +40,14 @@ describe("stitches of a result", () => {
     expect(section.textContent).toContain("left on");
     expect(section.textContent).toContain("12 ms");
     expect(section.textContent).toContain("0.30 µl");
+  });
+  it("say how the tissue was held, with a warning where the wall was taken through", () => {
+    expect(handlingSection({ adventitia: 0, through_wall: 0, slipped: 0, most_pull_n: 0 })).toBeNull();
+    expect(handlingSection(undefined)).toBeNull();
+    const gentle = handlingSection({ adventitia: 3, through_wall: 0, slipped: 1, most_pull_n: 2.5e-3 })!;
+    expect(gentle.textContent).toContain("2.5 mN");
+    expect(gentle.querySelector(".alarm")).toBeNull();
+    expect(handlingSection({ adventitia: 0, through_wall: 1, slipped: 0, most_pull_n: 0 })!.querySelector(".alarm")!.textContent).toContain("adventitia only");
   });
   it("are not made up where a task has none", () => {
     expect(stitchSection({ ...result, stitches: undefined }, "s")).toBeNull();

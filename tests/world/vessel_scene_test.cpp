@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -246,6 +247,96 @@ TEST(VesselScene, StumpsSurviveWildHands) {
     }
     EXPECT_LT(w.observation().tissue.positions.cwiseAbs().maxCoeff(), 10e-3) << "the stumps are in their clamp, seed " << seed;
   }
+}
+
+/// Forceps at a digital artery: come down, close from 200 to 400 ms, are led by 0.4 mm, open at 2.6 s.
+struct Grasp {
+  std::shared_ptr<const Model> model = load_model(FILUM_SOURCE_DIR, "artery-stitch");
+  World w{model};
+  Points before = w.observation().tissue.positions;
+  Pose at;                // of the tool as it closes
+  Vec3 lead = Vec3::Zero();
+  double opened = 0.1;    // [rad]
+  std::vector<std::string> said;
+
+  /// Of the upstream stump: the middle of its rim, its outer radius, the way out of it along the vessel.
+  Vec3 middle() const {
+    Vec3 sum = Vec3::Zero();
+    for (const int i : ring()) sum += before.col(i) / static_cast<double>(ring().size());
+    return sum;
+  }
+  const std::vector<int>& ring() const { return model->vessel->mesh.edge_ring[0]; }
+  double radius() const { return (Vec3(before.col(ring()[0])) - middle()).norm() + model->vessel->thickness; }
+  Vec3 axis() const { return middle().y() < 0.0 ? Vec3(0, 1, 0) : Vec3(0, -1, 0); }
+
+  void play(int from, int to) {
+    Inputs in;
+    in.tools[1] = {model->instrument_start[1], 0.2, 0.0, false, true, 0};
+    ToolInput& t = in.tools[0];
+    t.valid = true;
+    for (int k = from; k < to; ++k) {
+      const double come = std::min(1.0, k / 80.0), close = std::clamp((k - 100) / 100.0, 0.0, 1.0), led = std::clamp((k - 300) / 300.0, 0.0, 1.0);
+      t.X_WD.q = at.q;
+      t.X_WD.p = at.p + (1.0 - come) * 2e-3 * (at.q * Vec3::UnitZ()) + led * lead;
+      t.grip_angle = k < 1300 ? opened - close * (opened + 0.03) : opened;
+      w.step(in);
+      const Observation& o = w.observation();
+      for (int e = 0; e < o.n_events; ++e)
+        if (o.events[static_cast<std::size_t>(e)].tool == 0) said.push_back(o.events[static_cast<std::size_t>(e)].name);
+    }
+  }
+  double moved() const { return (w.observation().tissue.positions - before).colwise().norm().maxCoeff(); }  // [m]
+  int times(const char* name) const { return static_cast<int>(std::count(said.begin(), said.end(), name)); }
+};
+
+Quat frame(const Vec3& opening, const Vec3& handle) {
+  Mat3 axes;
+  axes << opening, handle.cross(opening), handle;
+  return Quat(axes);
+}
+
+TEST(VesselScene, OneJawInTheLumenHoldsTheWallThroughItsThickness) {
+  Grasp g;
+  const Vec3 handle = (Vec3::UnitZ() + g.axis()).normalized();
+  g.at = {g.middle() + (g.radius() - 0.5 * g.model->vessel->thickness) * Vec3::UnitX() - 0.25e-3 * handle, frame(Vec3::UnitX(), handle)};
+  g.lead = 0.4e-3 * Vec3::UnitX();
+  g.play(0, 1300);
+  EXPECT_EQ(g.times("wall-taken"), 1);
+  const GripObservation held = g.w.observation().tissue.grips[0];
+  EXPECT_TRUE(held.held && held.through);
+  EXPECT_GT(held.pull, 0.3e-3);
+  EXPECT_GT(g.moved(), 0.3e-3) << "the edge comes with the forceps";
+  const double rest = 2.0 * std::asin(0.5 * g.model->vessel->thickness / 8e-3);
+  EXPECT_GT(g.w.state().instruments[0].angle, 0.3 * rest) << "the jaws rest on it";
+  EXPECT_LT(g.w.state().instruments[0].angle, rest);
+  EXPECT_GT(g.w.observation().tools[0].grip_force, 0.05);
+  g.play(1300, 1800);
+  EXPECT_EQ(g.times("tissue-released"), 1);
+  EXPECT_LT(g.moved(), 20e-6) << "back where it was";
+}
+
+TEST(VesselScene, TipsOnTheOutsideLiftTheVesselByItsAdventitia) {
+  Grasp g;
+  g.opened = 0.05;
+  g.at = {g.middle() - 1e-3 * g.axis() + (g.radius() - 0.05e-3) * Vec3::UnitZ(), frame(Vec3::UnitX(), Vec3::UnitZ())};
+  g.lead = 0.4e-3 * Vec3::UnitZ();
+  g.play(0, 1300);
+  EXPECT_EQ(g.times("tissue-taken"), 1);
+  const GripObservation held = g.w.observation().tissue.grips[0];
+  EXPECT_TRUE(held.held && !held.through);
+  EXPECT_GT((g.w.observation().tissue.positions - g.before).row(2).maxCoeff(), 0.15e-3);
+  EXPECT_LT(g.w.observation().tools[0].f_T_W.z(), -0.3e-3) << "it pulls down";
+  g.play(1300, 1800);
+  EXPECT_LT(g.moved(), 20e-6);
+}
+
+TEST(VesselScene, ClosedTipsThatPressOnItHoldNothing) {
+  Grasp g;
+  g.opened = -0.03;
+  g.at = {g.middle() - 1e-3 * g.axis() + (g.radius() - 0.1e-3) * Vec3::UnitZ(), frame(Vec3::UnitX(), Vec3::UnitZ())};
+  g.play(0, 500);
+  EXPECT_GT(g.moved(), 0.1e-3);
+  EXPECT_FALSE(g.w.observation().tissue.grips[0].held);
 }
 
 }  // namespace vessel_scene_test

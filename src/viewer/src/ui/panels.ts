@@ -26,8 +26,9 @@ class Meter {
   private scale: number;
   private peak = 0;
 
-  constructor(private readonly label: string, private readonly fixedScale: number | null, mark: string | null) {
-    this.scale = fixedScale ?? 0.2;
+  /// `smallest` [N]: full scale of a bar that grows, at first.
+  constructor(private readonly label: string, private readonly fixedScale: number | null, mark: string | null, private readonly smallest = 0.2) {
+    this.scale = fixedScale ?? smallest;
     const track = h("div", { class: "track" }, this.fill, this.peakMark,
       mark ? h("div", { class: "limit", title: mark }) : null);
     this.element = h("div", { class: "meter", role: "meter", "aria-label": label, "aria-valuemin": 0 },
@@ -36,7 +37,7 @@ class Meter {
 
   show(newton: number, zone: string, zoneText: string): void {
     this.peak = Math.max(this.peak, newton);
-    if (this.fixedScale === null) this.scale = Math.max(this.scale, barScale(this.peak));
+    if (this.fixedScale === null) this.scale = Math.max(this.scale, barScale(this.peak, this.smallest));
     const share = Math.min(1, Math.max(0, newton / this.scale));
     this.fill.style.transform = `scaleX(${share.toFixed(3)})`;
     this.peakMark.style.left = `${(100 * Math.min(1, this.peak / this.scale)).toFixed(1)}%`;
@@ -68,7 +69,7 @@ export class ForcePanel {
     const thread = !kLaboratory.includes(scene.task);
     if (thread) this.element.append(h("h2", {}, "Thread"), h("p", { class: "quiet" }, `${scene.suture} · ${(2e6 * scene.thread_radius).toFixed(0)} µm · breaks at ${milliNewton(scene.thread_strength)}`), this.thread.element);
     this.tools = scene.tools.map((tool, index) => {
-      const grip = new Meter("Grip", null, null), pull = new Meter("Pull of the thread", null, null);
+      const grip = new Meter("Grip", null, null), pull = scene.tissue ? new Meter("Pull of thread and tissue", null, null, 0.02) : new Meter("Pull of the thread", null, null);
       const state = h("span", { class: "tag" }, "");
       const box = h("div", { class: "tool" }, h("h2", {}, h("span", { class: `bands b${index}`, "aria-hidden": "true" }), toolTitle(tool.name), state), ...(tool.kind === "scissors" ? [] : thread ? [grip.element, pull.element] : [grip.element]));
       this.element.append(box);

@@ -1,5 +1,5 @@
 // What was found of stitches, lapses and the join: a table for the result, a list of buttons beside the field of a replay.
-import type { Clamps, Lapse, Leak, MilkingTest, PatencyFactor, Result, Stitch } from "../messages";
+import type { Clamps, Handling, Lapse, Leak, MilkingTest, PatencyFactor, Result, Stitch } from "../messages";
 import { h } from "./dom";
 import { quantity, words } from "./format";
 import { icon } from "./pictures";
@@ -109,6 +109,16 @@ export function clampSection(clamps: Clamps | undefined, milking: MilkingTest | 
     milking ? list([["Refilled", `${milking.refilled} of ${milking.tests}`], ["Time of the last refill", milking.refill_s === null ? "–" : `${cell(milking.refill_s, 1000, 0)} ms`],
       ["Emptied", milking.emptied_ml === null ? "–" : `${cell(milking.emptied_ml, 1000, 2)} µl`], ["Spoiled (the further forceps let go)", `${milking.spoiled}`]]) : null,
     milking ? h("p", { class: "quiet" }, milking.note) : null);
+}
+
+/// How tissue was held with instruments; nothing where it never was.
+export function handlingSection(handling: Handling | undefined): HTMLElement | null {
+  if (!handling || handling.adventitia + handling.through_wall === 0) return null;
+  const harmed = handling.through_wall > 0;
+  return h("section", { class: "panel handlingpanel", "aria-labelledby": "handling-title" }, h("h2", { id: "handling-title" }, "Tissue held with instruments"),
+    h("dl", { class: "facts" }, h("dt", {}, "By its adventitia"), h("dd", {}, `${handling.adventitia} times`), h("dt", {}, "Through its thickness"), h("dd", {}, `${handling.through_wall} times`),
+      h("dt", {}, "Slipped from between the pads"), h("dd", {}, `${handling.slipped} times`), h("dt", {}, "Largest pull"), h("dd", {}, `${cell(handling.most_pull_n, 1000, 1)} mN`)),
+    h("p", { class: harmed ? "alarm" : "quiet" }, harmed ? icon.warn() : icon.pass(), harmed ? " A wall held through its thickness is harmed inside: take the adventitia only, or press with open tips." : " Never through its thickness: the intima was left alone."));
 }
 
 /// What raises the risk of a thrombus: factors with their source, no sum and no diagnosis.
