@@ -40,6 +40,7 @@ struct NeedleReport {
   double present_error = std::numeric_limits<double>::quiet_NaN();  // [m], root mean square while presenting, or of the holes' distances from their marks
   bool has_tissue = false;
   double thickness = 0.0;                // [m]
+  double round = std::numeric_limits<double>::quiet_NaN();  // [m], length of the cut round a vessel
   double peak_force = 0.0;               // [N], largest pull on the tissue
   HandlingReport handling;
   std::vector<Stitch> stitches;

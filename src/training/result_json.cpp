@@ -141,10 +141,11 @@ Json stitch_json(const Stitch& s, double thickness) {
           {"slack_mm", finite(1e3 * s.slack)}};
 }
 
-/// Of the walls alone at a held pressure (world/join_test.h).
-Json leak_json(const JoinReport& j) {
+/// Of the walls alone at a held pressure (world/join_test.h). `round` [m]: length of the cut.
+Json leak_json(const JoinReport& j, double round) {
   constexpr double kMlPerMin = 60e6;
-  Json sectors = Json::array();
+  Json sectors = Json::array(), edge = Json::array();
+  for (const EdgePlace& p : j.edge) edge.push_back({{"angle_deg", 360.0 * p.share}, {"gap_m", finite(p.gap)}});
   for (std::size_t k = 0; k < j.sector_flow.size(); ++k) sectors.push_back(finite(kMlPerMin * j.sector_flow[k]));
   return {{"total_ml_per_min", finite(kMlPerMin * j.leak)},
           {"per_sector", sectors},
@@ -156,7 +157,9 @@ Json leak_json(const JoinReport& j) {
           {"patent", j.patent},
           {"thread_in_lumen_m", finite(j.thread_inside)},
           {"edge_overlap_thicknesses", finite(j.overlap)},
-          {"solver_sound", j.sound}};
+          {"solver_sound", j.sound},
+          {"round_m", finite(round)},
+          {"edge", edge}};
 }
 
 /// Clamps as the trainee took them off, beside the test at the end.
@@ -218,7 +221,7 @@ void add_needle(const NeedleReport& n, Json& json) {
   if (n.scale) json["scale"] = scale_json(*n.scale, n);
   json["tissue_soundness"] = finite(n.soundness);
   json["handling"] = {{"adventitia", n.handling.folds}, {"through_wall", n.handling.walls}, {"slipped", n.handling.slips}, {"most_pull_n", finite(n.handling.pull)}};
-  if (n.join) json["leak"] = leak_json(*n.join);
+  if (n.join) json["leak"] = leak_json(*n.join, n.round);
   if (n.clamps) json["clamps"] = clamps_json(*n.clamps);
   if (n.milking) json["milking"] = milking_json(*n.milking);
   const std::vector<PatencyFactor> factors = patency_factors(n);

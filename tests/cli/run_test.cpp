@@ -54,9 +54,17 @@ TEST(Run, ATaskTellsWhatItMeasures) {
   expect_keys(press["pressure"], {"peak_mmhg", "dose", "time_in_band"});
   EXPECT_TRUE(press["knot"].is_null());
   const Json stitch = run_of("vessel-stitch", "0.1");
-  expect_keys(stitch, {"stitches", "lapses", "leak"});
+  expect_keys(stitch, {"stitches", "lapses", "leak", "handling"});
+  expect_keys(stitch["handling"], {"adventitia", "through_wall", "slipped", "most_pull_n"});
   EXPECT_TRUE(stitch["stitches"].empty());
   EXPECT_EQ(stitch["leak"]["per_sector"].size(), 8u);
+  EXPECT_NEAR(stitch["leak"]["round_m"].get<double>(), 3.14 * 0.9e-3, 0.5e-3) << "round a tube of 1 mm";
+  const Json& edge = stitch["leak"]["edge"];
+  ASSERT_GE(edge.size(), 20u);
+  for (std::size_t k = 0; k < edge.size(); ++k) {
+    EXPECT_NEAR(edge[k]["angle_deg"].get<double>(), 360.0 * static_cast<double>(k) / static_cast<double>(edge.size()), 1.0);
+    EXPECT_GT(edge[k]["gap_m"].get<double>(), 0.1e-3) << "nothing is sewn";
+  }
 }
 
 TEST(Run, TextSaysTheSameAsJson) {

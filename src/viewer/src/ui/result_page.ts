@@ -63,7 +63,7 @@ export class ResultPage implements Page {
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
       ...(result.passed ? [] : [reasons(result.verdict ?? [])]),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
-      h("div", { class: "stitchgrid" }, stitchSection(result, id), this.scaleCard(result, id), joinSection(result.leak), clampSection(result.clamps, result.milking), handlingSection(result.handling), factorSection(result.thrombosis_factors)),
+      h("div", { class: "stitchgrid" }, stitchSection(result, id), this.scaleCard(result, id), joinSection(result.leak, result.stitches, result.lapses), clampSection(result.clamps, result.milking), handlingSection(result.handling), factorSection(result.thrombosis_factors)),
       this.curves(result));
     const map = pressureMapPanel(result.pressure_map);
     if (map) this.element.insertBefore(map, this.element.lastElementChild);

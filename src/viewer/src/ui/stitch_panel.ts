@@ -2,6 +2,7 @@
 import type { Clamps, Handling, Lapse, Leak, MilkingTest, PatencyFactor, Result, Stitch } from "../messages";
 import { h } from "./dom";
 import { quantity, words } from "./format";
+import { joinPlot } from "./join_plot";
 import { icon } from "./pictures";
 
 const kCompass = 8; // sectors are counted from where the vessel's angle is zero
@@ -82,17 +83,18 @@ export function stitchSection(result: Result, id: string | null): HTMLElement | 
 }
 
 /// Leak by sector as bars, with narrowing and flow.
-export function joinSection(leak: Leak | undefined): HTMLElement | null {
+export function joinSection(leak: Leak | undefined, stitches: readonly Stitch[] = [], lapses: readonly Lapse[] = []): HTMLElement | null {
   if (!leak) return null;
   const most = Math.max(1e-9, ...leak.per_sector.map((value) => value ?? 0));
   const bars = leak.per_sector.map((value, k) => h("li", {}, h("span", { class: "sector" }, `${Math.round((360 * k) / Math.max(kCompass, leak.per_sector.length))}°`),
     h("span", { class: "track" }, h("span", { class: "fill", style: `transform:scaleX(${((value ?? 0) / most).toFixed(3)})` })), h("span", { class: "number" }, `${cell(value, 1, 1)} ml/min, gap ${cell(leak.gap_m[k], 1e6, 0)} µm`)));
+  const picture = joinPlot(leak, stitches, lapses);
   const narrow = leak.narrowing === null ? "not measured" : `${(100 * leak.narrowing).toFixed(0)} %`;
   return h("section", { class: "panel joinpanel", "aria-labelledby": "join-title" }, h("h2", { id: "join-title" }, `Clamps off, held at ${cell(leak.held_mmhg, 1, 0)} mmHg`),
     h("dl", { class: "facts" }, h("dt", {}, "Leak"), h("dd", {}, `${cell(leak.total_ml_per_min, 1, 1)} ml/min`), h("dt", {}, "Narrowing"), h("dd", {}, narrow),
       h("dt", {}, "Flow on beyond the join"), h("dd", {}, `${cell(leak.flow_if_tight_ml_per_min, 1, 1)} ml/min`), h("dt", {}, "Lumen"), h("dd", {}, leak.patent ? "patent" : "not patent"),
       h("dt", {}, "Thread in the lumen"), h("dd", {}, `${cell(leak.thread_in_lumen_m, 1000, 2)} mm`), h("dt", {}, "Edges overlap or rolled in"), h("dd", {}, `${cell(leak.edge_overlap_thicknesses, 1, 1)} wall thicknesses`)),
-    h("h3", {}, "Leak round the cut"), h("ul", { class: "sectors" }, ...bars), leak.solver_sound ? null : h("p", { class: "alarm" }, "The wall solver had trouble: take these numbers with care."));
+    picture ? h("h3", {}, "Gap and stitches round the cut") : null, picture, h("h3", {}, "Leak round the cut"), h("ul", { class: "sectors" }, ...bars), leak.solver_sound ? null : h("p", { class: "alarm" }, "The wall solver had trouble: take these numbers with care."));
 }
 
 /// Clamps as they were taken off, and the milking test: what flowed, and what a refill does not show.
