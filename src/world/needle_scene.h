@@ -30,6 +30,10 @@ class NeedleScene {
   void handle_buttons(State& s, std::uint32_t buttons, Observation& o) const noexcept;
   /// Jaws that close on the wire, or on the vessel, stop at it and squeeze it. Call before the instruments move.
   void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
+  /// After the instruments have moved from `from`: none has gone through tissue.
+  void hold_back(State& s, const std::vector<ObstacleBody>& from) const noexcept {
+    if (tissue_) tissue_->hold_back(s.tissue, model_.instruments, from, s.instruments);
+  }
   /// After the instruments have moved from `from`: tells the needle where they are, takes it, lets it go.
   void meet_tools(State& s, const std::vector<ObstacleBody>& from, Observation& o) noexcept;
   /// Thread and needle, joined; what they did to each other is in `s` and `rod`.

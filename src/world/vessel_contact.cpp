@@ -189,6 +189,24 @@ void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState&
   s.touches[static_cast<std::size_t>(s.n++)] = touch;
 }
 
+double VesselContact::free_way(const VesselWall& wall, const WallState& w, const InstrumentParameters& tool, const Pose& from,
+                               const InstrumentState& to) const noexcept {
+  double share = 1.0;
+  const InstrumentBars bars = instrument_bars(tool, to.angle, 0.0);
+  for (int b = 0; b < 2; ++b) {
+    for (const double f : kOnJaw) {
+      const Vec3 q = bars.a_T[b] + f * (bars.b_T[b] - bars.a_T[b]), a = from * q, way = to.X_WT * q - a;
+      const double radius = bars.r_a[b] + f * (bars.r_b[b] - bars.r_a[b]), length = way.norm();
+      if (length <= kAhead) continue;  // press() sees it in time
+      const WallCrossing hit = wall.crossing(w, a, a + (1.0 + radius / length) * way);
+      if (!hit.found || hit.normal.dot(way) >= 0.0) continue;
+      const double touches = hit.fraction * (length + radius) - radius;  // [m], on its way
+      share = std::min(share, (std::max(0.0, touches) + kAhead) / length);
+    }
+  }
+  return share;
+}
+
 void VesselContact::press(VesselWall& wall, const WallState& w, const std::vector<InstrumentParameters>& tools,
                           const std::vector<InstrumentState>& states) noexcept {
   n_pushes_ = 0;

@@ -8,7 +8,7 @@
 // bristles of stiffness k (return mapping), so that what sticks does not creep. Thread and wall move in turn: first the thread past the wall as it stands, then the wall past the thread. In the wall's turn
 // a sample x was, as the wall's point p next to it sees it, at x + h v(p). Where a track holds the thread nothing is looked for.
 // Jaws: spheres along them that push the faces they touch along their normals and drag them by friction, within the tissue's own step.
-// Neglects: thickness of the thread, rims thinner than 0.1 mm between two samples, jaws faster than their radius a step (75 mm/s).
+// Neglects: thickness of the thread, rims thinner than 0.1 mm between two samples, jaws beyond 1.2 mm from their tips.
 // Test: vessel_contact_test.
 
 #include <vector>
@@ -33,6 +33,9 @@ class VesselContact {
               const std::vector<RodTether>& on_thread) noexcept;
   /// After the wall's step: thread, at rest or not, that the wall has moved over.
   void overtake(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread) noexcept;
+  /// Share of the way of a tool in this step that it can go without a jaw being carried past the wall: one that is faster than 50 mm/s goes 0.1 mm into what it meets and is
+  /// held back there (a proxy that surfaces stop: Ruspini, Kolarov & Khatib, SIGGRAPH 1997), to push it along in the steps to come.
+  double free_way(const VesselWall& wall, const WallState& w, const InstrumentParameters& tool, const Pose& from, const InstrumentState& to) const noexcept;
   /// Jaws at their present poses stand against the wall in its coming step.
   void press(VesselWall& wall, const WallState& w, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states) noexcept;
   /// After that step: adds to `force` [N] and `torque` [N m] on the tools.

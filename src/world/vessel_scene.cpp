@@ -157,6 +157,19 @@ void VesselScene::meet_jaws(VesselState& s, int tool, const GrippingTool& jaws, 
   if (take_wall(wall_, s.wall, jaws, {model_.thickness, model_.adventitia}, grip)) say(o, grip.through != 0 ? "wall-taken" : "tissue-taken", tool, 0.0, "-");
 }
 
+void VesselScene::hold_back(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<ObstacleBody>& from,
+                            std::vector<InstrumentState>& states) const noexcept {
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    InstrumentState& tool = states[i];
+    const Pose& before = from[i].X_start;
+    const double share = contact_.free_way(wall_, s.wall, tools[i], before, tool);
+    if (share >= 1.0) continue;
+    tool.X_WT = {before.p + share * (tool.X_WT.p - before.p), before.q.slerp(share, tool.X_WT.q)};
+    tool.v *= share;
+    tool.w *= share;
+  }
+}
+
 void VesselScene::press(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, Observation& o) noexcept {
   if (blood_) blood_->step(s, tools, states, o);
   contact_.press(wall_, s.wall, tools, states);

@@ -31,6 +31,8 @@ class VesselScene {
   double stop_angle(const VesselState& s, int tool, const GrippingTool& jaws) const noexcept;
   /// Jaws that `may_take` hold the tissue between them; opened they let it go.
   void meet_jaws(VesselState& s, int tool, const GrippingTool& jaws, bool may_take, Observation& o) const noexcept;
+  /// After the tools have moved from `from`: those that would have gone through tissue are held back at it.
+  void hold_back(const VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<ObstacleBody>& from, std::vector<InstrumentState>& states) const noexcept;
   /// Jaws against the tissue, and blood. Before step().
   void press(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, Observation& o) noexcept;
   /// After step(): adds to the forces on the jaws.

@@ -177,6 +177,7 @@ void World::Impl::move_instruments() noexcept {
   if (!pellets.empty()) pellets.limit_jaws(model->instruments, state.instruments, state.pellets, commands);
   if (needle) needle->limit_jaws(state, commands);
   instruments.step(state.instruments, commands, state.force, state.torque, model->step.dt);
+  if (needle) needle->hold_back(state, rod.obstacles.bodies);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     ObstacleBody& body = rod.obstacles.bodies[i];
     body.X_end = state.instruments[i].X_WT;

@@ -21,6 +21,11 @@ std::shared_ptr<const Model> scene() {
   return model;
 }
 
+std::shared_ptr<const Model> stumps() {
+  static const auto model = load_model(FILUM_SOURCE_DIR, "vessel-stitch");
+  return model;
+}
+
 TEST(VesselScene, CardLiesStillByItself) {
   World w(scene());
   Inputs in;
@@ -46,6 +51,50 @@ TEST(VesselScene, JawPressesTheCardDownAndFeelsIt) {
   }
   EXPECT_LT(deepest, -0.15e-3) << "below where it lay";
   EXPECT_GT(felt, 1e-4);
+}
+
+/// At half a metre a second a step takes a jaw 1 mm on: through the card and out, if nothing held it back.
+TEST(VesselScene, FastJawsDoNotPassThroughTheCard) {
+  for (const double speed : {0.05, 0.2, 0.5}) {
+    World w(scene());
+    Inputs in;
+    ToolInput& t = in.tools[0];
+    t.valid = true;
+    t.grip_angle = 0.0;
+    double lowest = 0.0;
+    for (int k = 0; k < 700; ++k) {
+      t.X_WD.p = Vec3(0.0, 1.5e-3, std::max(-0.4e-3, 4e-3 - std::max(0, k - 200) * speed * 2e-3));
+      w.step(in);
+      lowest = std::min(lowest, w.state().instruments[0].X_WT.p.z());
+    }
+    EXPECT_LT(lowest, -0.25e-3) << "the hand gets its way, " << speed;
+    const Points& x = w.observation().tissue.positions;
+    double under = 0.0;  // of the card, where the jaw is
+    for (int i = 0; i < x.cols(); ++i)
+      if ((Vec3(x.col(i)) - w.state().instruments[0].X_WT.p).head<2>().norm() < 0.4e-3) under = std::min(under, x(2, i));
+    EXPECT_LT(under, -0.3e-3) << "the card is below the jaw, " << speed;
+  }
+}
+
+/// However fast a jaw comes at a vessel from the side, it lies where one that comes slowly has pushed it.
+TEST(VesselScene, FastJawsPushAVesselAside) {
+  const auto aside = [](double speed) {  // [m/s]; [m]
+    World w(stumps());
+    const Points before = w.observation().tissue.positions;
+    Inputs in;
+    ToolInput& t = in.tools[0];
+    t.valid = true;
+    t.grip_angle = 0.0;
+    for (int k = 0; k < 1200; ++k) {  // upstream stump, 1 mm from its edge, tip 0.4 mm below its axis
+      t.X_WD.p = Vec3(-3e-3 + std::clamp((k - 200) * speed * 2e-3, 0.0, 3e-3), -1.3e-3, -0.4e-3);
+      w.step(in);
+    }
+    return (w.observation().tissue.positions - before).row(0).maxCoeff();
+  };
+  const double slow = aside(0.02);
+  EXPECT_GT(slow, 0.1e-3);
+  EXPECT_NEAR(aside(0.1) / slow, 1.0, 0.02);
+  EXPECT_NEAR(aside(0.5) / slow, 1.0, 0.02);
 }
 
 /// The sheet of the needle course is stretched over its frame: it lies still, and a closed jaw is held up by its tension T as by a membrane,
@@ -120,11 +169,6 @@ TEST(VesselScene, SurvivesWildHands) {
     EXPECT_LT((o.positions.col(o.n_nodes - 1) - o.needle.swage_W).norm(), 20e-6) << "thread and needle are joined still, seed " << seed;
     EXPECT_LT(o.tissue.positions.cwiseAbs().maxCoeff(), 10e-3) << "the card is where its frame is, seed " << seed;
   }
-}
-
-std::shared_ptr<const Model> stumps() {
-  static const auto model = load_model(FILUM_SOURCE_DIR, "vessel-stitch");
-  return model;
 }
 
 TEST(VesselScene, StumpsStandOpenAndStill) {
