@@ -44,7 +44,7 @@ JoinGate parse_join_gate(const YamlNode& node) {
 
 NeedleGoal parse_needle_goal(const YamlNode& node) {
   NeedleGoal g;
-  const std::string kind = node.choice("kind", {"pick", "load", "present", "pass", "draw", "eye", "tie", "cut", "stitch"});
+  const std::string kind = node.choice("kind", {"pick", "load", "present", "pass", "draw", "eye", "tie", "cut", "stitch", "grasp"});
   g.tool = node.integer_or("tool", 0, 0, 2);
   if (kind == "load") {
     g.kind = NeedleGoal::Kind::load;
@@ -62,6 +62,12 @@ NeedleGoal parse_needle_goal(const YamlNode& node) {
     g.at = node.vec3("in", "mm");
     g.out = node.vec3("out", "mm");
     g.within = node.quantity("within", "mm", Range::positive());
+  } else if (kind == "grasp") {
+    g.kind = NeedleGoal::Kind::grasp;
+    g.side = node.integer("side", 0, 1);
+    g.low = node.quantity("pull_from", "mN", Range::between(0.0, 1.0));
+    g.high = node.quantity("pull_to", "mN", Range::between(g.low, 1.0));
+    g.seconds = node.quantity("for", "s", Range::between(0.0, 60.0));
   } else if (kind == "stitch") {
     g.kind = NeedleGoal::Kind::stitch;
     g.stitch = parse_stitch_rule(node);

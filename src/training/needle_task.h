@@ -21,14 +21,15 @@ struct StitchRule {
 };
 
 struct NeedleGoal {
-  enum class Kind { pick, load, present, pass, draw, eye, tie, cut, stitch } kind = Kind::pick;
+  enum class Kind { pick, load, present, pass, draw, eye, tie, cut, stitch, grasp } kind = Kind::pick;
   int tool = 0;
-  double low = 0.0, high = 1.0;   // load: where on the needle, share of its length from the swage
+  double low = 0.0, high = 1.0;   // load: where on the needle, share of its length from the swage; grasp: pull [N]
   double angle = 0.0;             // [rad], load: largest deviation from a right angle between wire and handle
   Vec3 at = Vec3::Zero();         // [m], present, frame W; eye: mark where the needle goes into the card at rest
   Vec3 out = Vec3::Zero();        // [m], eye: mark where it comes out
   double within = 0.0;            // [m], present; eye: of both marks, seen from above
-  double seconds = 0.0;           // [s], load, present and tie: kept so long
+  double seconds = 0.0;           // [s], load, present, tie and grasp: kept so long
+  int side = 0;                   // grasp: of the cut, 0 or 1
   int passes = 0;                 // pass, draw, tie, cut: ways through the tissue
   int throws = 0;                 // tie: at least
   std::vector<std::string> knots; // tie: classes that count, none: any

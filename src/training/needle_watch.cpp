@@ -77,6 +77,14 @@ double needle_value(Measure measure, const NeedleReport& r) {
       return r.drops;
     case Measure::needle_present:
       return r.present_error;
+    case Measure::tissue_takes:
+      return r.handling.folds + r.handling.walls;
+    case Measure::wall_grasps:
+      return r.handling.walls;
+    case Measure::tissue_slips:
+      return r.handling.slips;
+    case Measure::grip_pull:
+      return r.handling.pull;
     case Measure::stitch_order:
       return r.out_of_turn < 0 ? kNaN : r.out_of_turn;
     case Measure::stitches:
@@ -159,6 +167,11 @@ bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {
       if (!now) break;
       square_ += error * error * dt;
       present_time_ += dt;
+      break;
+    }
+    case NeedleGoal::Kind::grasp: {
+      const GripObservation& grip = o.tissue.grips[tool];
+      now = grip.held && !grip.through && grip.side == g.side && grip.pull >= g.low && grip.pull <= g.high;
       break;
     }
     case NeedleGoal::Kind::eye:

@@ -211,6 +211,7 @@ Json scale_json(const RatingScale& s, const NeedleReport& report) {
 void add_needle(const NeedleReport& n, Json& json) {
   json["needle"] = {{"takes", n.takes}, {"drops", n.drops}, {"angle_error_rad", finite(n.angle_error)}, {"held_at_share", finite(n.share)}, {"present_error_m", finite(n.present_error)}};
   if (n.out_of_turn >= 0) json["needle"]["stitches_out_of_turn"] = n.out_of_turn;
+  json["handling"] = {{"adventitia", n.handling.folds}, {"through_wall", n.handling.walls}, {"slipped", n.handling.slips}, {"most_pull_n", finite(n.handling.pull)}};
   if (!n.has_tissue) return;
   json["stitches"] = Json::array();
   for (const Stitch& s : n.stitches) json["stitches"].push_back(stitch_json(s, n.thickness));
@@ -220,7 +221,6 @@ void add_needle(const NeedleReport& n, Json& json) {
   json["lapse_rules"] = n.rules;
   if (n.scale) json["scale"] = scale_json(*n.scale, n);
   json["tissue_soundness"] = finite(n.soundness);
-  json["handling"] = {{"adventitia", n.handling.folds}, {"through_wall", n.handling.walls}, {"slipped", n.handling.slips}, {"most_pull_n", finite(n.handling.pull)}};
   if (n.join) json["leak"] = leak_json(*n.join, n.round);
   if (n.clamps) json["clamps"] = clamps_json(*n.clamps);
   if (n.milking) json["milking"] = milking_json(*n.milking);

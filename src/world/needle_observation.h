@@ -76,6 +76,7 @@ struct GripObservation {
   bool held = false;
   bool through = false;                   // the wall through its thickness, not its adventitia alone
   double pull = 0.0;                      // [N], of the tissue on the tool
+  int side = -1;                          // of the cut, 0 or 1; -1: nothing is held
 };
 
 struct TissueObservation {

@@ -211,7 +211,11 @@ void VesselScene::observe(const VesselState& s, const RodState& thread, Observat
   t.n_passes = s.tracks.n;
   t.point_force = s.tracks.point.force;
   t.soundness = *std::min_element(s.wall.soundness.begin(), s.wall.soundness.end());
-  for (std::size_t i = 0; i < s.grips.size(); ++i) t.grips[i] = {s.grips[i].n > 0, s.grips[i].through != 0, s.grips[i].pull};
+  for (std::size_t i = 0; i < s.grips.size(); ++i) {
+    const WallGrip& grip = s.grips[i];
+    t.grips[i] = {};
+    if (grip.n > 0) t.grips[i] = {true, grip.through != 0, grip.pull, model_.mesh.part[static_cast<std::size_t>(grip.places[0].at[0].element)]};
+  }
   if (blood_) blood_->observe(s, t.blood);
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   for (int k = 0; k < s.tracks.n; ++k) {

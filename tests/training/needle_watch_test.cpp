@@ -159,6 +159,33 @@ TEST(NeedleWatch, FollowsClampsAndMilking) {
   EXPECT_NEAR(r.milking->volume, 4e-10, 1e-20);
 }
 
+TEST(NeedleWatch, AdventitiaIsHeldOnItsSideWithThePullAskedFor) {
+  NeedleTask task;
+  NeedleGoal grasp;
+  grasp.kind = NeedleGoal::Kind::grasp;
+  grasp.tool = 1;
+  grasp.side = 1;
+  grasp.low = 0.3e-3;
+  grasp.high = 2e-3;
+  grasp.seconds = 0.1;
+  task.goals = {grasp};
+  const auto met_by = [&](std::size_t tool, const GripObservation& grip, double seconds = 0.2) {
+    NeedleWatch w(task, {});
+    std::vector<TaskEvent> events;
+    Observation o = field();
+    o.tissue.grips[tool] = grip;
+    watch(w, o, seconds, events);
+    return w.done();
+  };
+  EXPECT_TRUE(met_by(1, {true, false, 1e-3, 1}));
+  EXPECT_FALSE(met_by(1, {true, false, 1e-3, 1}, 0.05)) << "not yet long enough";
+  EXPECT_FALSE(met_by(0, {true, false, 1e-3, 1})) << "the other hand";
+  EXPECT_FALSE(met_by(1, {true, false, 1e-3, 0})) << "the other stump";
+  EXPECT_FALSE(met_by(1, {true, true, 1e-3, 1})) << "through the wall";
+  EXPECT_FALSE(met_by(1, {true, false, 0.2e-3, 1})) << "too gently";
+  EXPECT_FALSE(met_by(1, {true, false, 3e-3, 1})) << "too hard";
+}
+
 TEST(NeedleWatch, CountsTakesDropsAndWholeStitches) {
   NeedleTask task;
   NeedleGoal pass, draw;
@@ -206,6 +233,10 @@ TEST(NeedleWatch, CountsTakesDropsAndWholeStitches) {
   EXPECT_EQ(r.takes, 1);
   EXPECT_EQ(r.drops, 1);
   EXPECT_EQ(r.handling.folds, 2);
+  EXPECT_EQ(needle_value(Measure::tissue_takes, r), 3.0);
+  EXPECT_EQ(needle_value(Measure::wall_grasps, r), 1.0);
+  EXPECT_EQ(needle_value(Measure::tissue_slips, r), 1.0);
+  EXPECT_EQ(needle_value(Measure::grip_pull, r), 2e-3);
   EXPECT_EQ(r.handling.walls, 1);
   EXPECT_EQ(r.handling.slips, 1);
   EXPECT_EQ(r.handling.pull, 2e-3);

@@ -110,7 +110,7 @@ it("no key is listed twice for the same place", () => {
 });
 
 it("tasks that differ in what is done have pictures that differ", () => {
-  const tasks = ["artery-stitch", "anastomosis-8", "vessel-stitch", "anastomosis-lapses", "stitch-throw", "stitch-knot", "artery-knot", "artery-two-stitches", "artery-four-stitches", "anastomosis-vein", "triangulation-120", "posterior-wall-first", "continuous-suture", "end-to-side", "card-stitches", "ten-stitches", "needle-course", "needle-loading", "grasp-transfer", "tip-hold", "trace",
+  const tasks = ["vessel-handling", "artery-stitch", "anastomosis-8", "vessel-stitch", "anastomosis-lapses", "stitch-throw", "stitch-knot", "artery-knot", "artery-two-stitches", "artery-four-stitches", "anastomosis-vein", "triangulation-120", "posterior-wall-first", "continuous-suture", "end-to-side", "card-stitches", "ten-stitches", "needle-course", "needle-loading", "grasp-transfer", "tip-hold", "trace",
     "press-to-target", "sylvian-opening", "knot-throw", "knot-square", "knot-two-forceps", "knot-surgeons"];
   const drawn = tasks.map((task) => taskPicture(task, "").outerHTML.replace(/field\d+/g, ""));
   expect(new Set(drawn).size).toBe(tasks.length);

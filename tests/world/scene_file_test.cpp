@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "world/vessel_model.h"
 #include "world/wall_file.h"
+#include "world/state.h"
 #include "world/world.h"
 
 namespace filum {

@@ -148,6 +148,12 @@ function vesselPicture(label: string, colour: string, turns: number): SVGElement
   return field(stumps(colour) + thread, label);
 }
 
+/// Two tips that lift one of the stumps by a fold of its outside.
+function handlingPicture(label: string): SVGElement {
+  return field(`${stumps("#cf8378")}<path d="M-40 -14C-34 -16 -32 -24 -30 -24S-26 -16 -20 -14Z" fill="#cf8378" stroke="#7a3f38" stroke-width=".8"/>
+    <g stroke="#2b333b" stroke-width=".6"><path d="M-32 -20L-44 -62H-34Z" fill="#METAL"/><path d="M-28 -20L-16 -62H-26Z" fill="#METAL"/></g>`, label);
+}
+
 /// A stitch as it should be, and a needle beside it that goes down through both walls of one stump, far from the edge.
 function lapsesPicture(label: string): SVGElement {
   return field(`${stumps("#dcc8b6")}<path d="M-12 -6H12C22 -8 24 -22 30 -36" ${kThread}/>${needle(-30, 4, 90, 1.3)}<circle cx="-22" cy="17" r="10" fill="none" stroke="#a3282a" stroke-width="2" stroke-dasharray="4 3"/>`, label);
@@ -200,6 +206,7 @@ function tipPicture(label: string, objects: boolean): SVGElement {
 const kScenes: Record<string, (title: string) => SVGElement> = {
   "knot-throw": (title) => knotPicture("overhand", title, true),
   "knot-two-forceps": (title) => knotPicture("square", title, true, 0.8), // small enough for both instruments
+  "vessel-handling": handlingPicture,
   "artery-stitch": (title) => vesselPicture(title, "#cf8378", 0),
   "anastomosis-8": (title) => joinPicture(title, [0, 180], [45, 90, 135, 225, 270, 315]),
   "vessel-stitch": (title) => vesselPicture(title, "#dcc8b6", 0),
