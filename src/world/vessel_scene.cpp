@@ -177,7 +177,9 @@ void VesselScene::press(VesselState& s, const std::vector<InstrumentParameters>&
     WallGrip& grip = s.grips[i];
     if (grip.n == 0) continue;
     pull_wall(wall_, s.wall, {tools[i], states[i]}, grip);
-    if (grip.n == 0) say(o, "tissue-slipped", static_cast<int>(i), states[i].grip_force, "N");
+    if (grip.n > 0) continue;
+    say(o, "tissue-slipped", static_cast<int>(i), states[i].grip_force, "N");
+    grip = {};
   }
 }
 

@@ -69,7 +69,7 @@ export class ForcePanel {
     const thread = !kLaboratory.includes(scene.task);
     if (thread) this.element.append(h("h2", {}, "Thread"), h("p", { class: "quiet" }, `${scene.suture} · ${(2e6 * scene.thread_radius).toFixed(0)} µm · breaks at ${milliNewton(scene.thread_strength)}`), this.thread.element);
     this.tools = scene.tools.map((tool, index) => {
-      const grip = new Meter("Grip", null, null), pull = scene.tissue ? new Meter("Pull of thread and tissue", null, null, 0.02) : new Meter("Pull of the thread", null, null);
+      const grip = new Meter("Grip", null, null), pull = scene.tissue ? new Meter("Pull on the tip", null, null, 0.005) : new Meter("Pull of the thread", null, null);
       const state = h("span", { class: "tag" }, "");
       const box = h("div", { class: "tool" }, h("h2", {}, h("span", { class: `bands b${index}`, "aria-hidden": "true" }), toolTitle(tool.name), state), ...(tool.kind === "scissors" ? [] : thread ? [grip.element, pull.element] : [grip.element]));
       this.element.append(box);
