@@ -41,9 +41,12 @@ void check_tools(const std::string& file, const Task& task, const Model& model) 
   if (asks_to_cut(task) && std::none_of(model.instruments.begin(), model.instruments.end(), blades))
     throw InputError(file, "steps", "cut", "scissors among the instruments of its scene.yaml");
   if (task.needle == nullptr) return;
-  for (const NeedleGoal& g : task.needle->goals)
+  const bool loose = model.vessel != nullptr && model.vessel->adventitia;
+  for (const NeedleGoal& g : task.needle->goals) {
+    if (g.kind == NeedleGoal::Kind::grasp && !loose) throw InputError(file, "steps", "grasp", "a vessel with adventitia as the tissue of its scene.yaml");
     if (g.tool < 0 || g.tool >= static_cast<int>(model.instruments.size()))
       throw InputError(file, "tool", std::to_string(g.tool), "one of the " + std::to_string(model.instruments.size()) + " instruments of its scene.yaml, from 0");
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "base/error.h"
 #include "world/model.h"
@@ -34,8 +35,8 @@ TEST(Setup, AnUnknownTaskIsAnsweredWithThoseThereAre) {
   }
 }
 
-/// A copy of a task whose scene lacks a line.
-std::string refused(const std::string& task, const std::string& without) {
+/// What is said of a copy of a task whose scene has other lines where it had these.
+std::string refused(const std::string& task, const std::map<std::string, std::string>& instead) {
   namespace fs = std::filesystem;
   const fs::path root = fs::temp_directory_path() / ("filum-setup-" + std::to_string(getpid()));
   fs::create_directories(root / "curricula");
@@ -45,8 +46,11 @@ std::string refused(const std::string& task, const std::string& without) {
   const std::string scene = (root / "curricula" / task / "scene.yaml").string();
   std::ifstream in(scene);
   std::string kept;
-  for (std::string line; std::getline(in, line);)
-    if (line.find(without) == std::string::npos) kept += line + "\n";
+  for (std::string line; std::getline(in, line);) {
+    for (const auto& [had, has] : instead)
+      if (line.find(had) != std::string::npos) line = has;
+    kept += line + "\n";
+  }
   std::ofstream(scene) << kept;
   std::string said;
   try {
@@ -59,12 +63,17 @@ std::string refused(const std::string& task, const std::string& without) {
 }
 
 TEST(Setup, ATaskThatWantsAToolWhichItsSceneLacksIsRefused) {
-  EXPECT_NE(refused("knot-square", "name: scissors").find("scissors among the instruments"), std::string::npos);
-  EXPECT_NE(refused("triangulation-120", "name: scissors").find("scissors among the instruments"), std::string::npos);
-  EXPECT_NE(refused("vessel-stitch", "name: needle-holder").find("one of the 1 instruments"), std::string::npos);
+  EXPECT_NE(refused("knot-square", {{"name: scissors", ""}}).find("scissors among the instruments"), std::string::npos);
+  EXPECT_NE(refused("triangulation-120", {{"name: scissors", ""}}).find("scissors among the instruments"), std::string::npos);
+  EXPECT_NE(refused("vessel-stitch", {{"name: needle-holder", ""}}).find("one of the 1 instruments"), std::string::npos);
 }
 
 /// Listed tasks were there whose steps could not be made.
+TEST(Setup, WhatHasNoAdventitiaCannotBeHeldByIt) {
+  EXPECT_NE(refused("vessel-handling", {{"preset:", "  preset: silicone-tube"}, {"track:", "  track: silicone"}}).find("adventitia"), std::string::npos);
+  EXPECT_EQ(refused("vessel-handling", {{"preset:", "  preset: chicken-artery"}}), "");
+}
+
 TEST(Setup, EveryTaskHasTheToolsForItsSteps) {
   for (const std::string& name : task_names(FILUM_SOURCE_DIR)) EXPECT_NO_THROW(load_setup(FILUM_SOURCE_DIR, name)) << name;
 }
