@@ -46,6 +46,7 @@ describe("stitches of a result", () => {
     expect(handlingSection(undefined)).toBeNull();
     const gentle = handlingSection({ adventitia: 3, through_wall: 0, slipped: 1, most_pull_n: 2.5e-3 })!;
     expect(gentle.textContent).toContain("2.5 mN");
+    expect([...gentle.querySelectorAll("dd")].map((one) => one.textContent).slice(0, 3)).toEqual(["3 times", "never", "once"]);
     expect(gentle.querySelector(".alarm")).toBeNull();
     expect(handlingSection({ adventitia: 0, through_wall: 1, slipped: 0, most_pull_n: 0 })!.querySelector(".alarm")!.textContent).toContain("adventitia only");
   });

@@ -113,13 +113,15 @@ export function clampSection(clamps: Clamps | undefined, milking: MilkingTest | 
     milking ? h("p", { class: "quiet" }, milking.note) : null);
 }
 
+const times = (n: number): string => (n === 0 ? "never" : n === 1 ? "once" : `${n} times`);
+
 /// How tissue was held with instruments; nothing where it never was.
 export function handlingSection(handling: Handling | undefined): HTMLElement | null {
   if (!handling || handling.adventitia + handling.through_wall === 0) return null;
   const harmed = handling.through_wall > 0;
   return h("section", { class: "panel handlingpanel", "aria-labelledby": "handling-title" }, h("h2", { id: "handling-title" }, "Tissue held with instruments"),
-    h("dl", { class: "facts" }, h("dt", {}, "By its adventitia"), h("dd", {}, `${handling.adventitia} times`), h("dt", {}, "Through its thickness"), h("dd", {}, `${handling.through_wall} times`),
-      h("dt", {}, "Slipped from between the pads"), h("dd", {}, `${handling.slipped} times`), h("dt", {}, "Largest pull"), h("dd", {}, `${cell(handling.most_pull_n, 1000, 1)} mN`)),
+    h("dl", { class: "facts" }, h("dt", {}, "By its adventitia"), h("dd", {}, times(handling.adventitia)), h("dt", {}, "Through its thickness"), h("dd", {}, times(handling.through_wall)),
+      h("dt", {}, "Slipped from between the pads"), h("dd", {}, times(handling.slipped)), h("dt", {}, "Largest pull"), h("dd", {}, `${cell(handling.most_pull_n, 1000, 1)} mN`)),
     h("p", { class: harmed ? "alarm" : "quiet" }, harmed ? icon.warn() : icon.pass(), harmed ? " A wall held through its thickness is harmed inside: take the adventitia only, or press with open tips." : " Never through its thickness: the intima was left alone."));
 }
 
