@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/observe.h"
+
 namespace filum {
 namespace {
 
@@ -11,10 +13,6 @@ constexpr double kNearArm = 0.5e-3;       // [m], of closing tips from a clamp's
 constexpr double kAcross = 0.5;           // least cosine between the vessel and the jaws' width
 constexpr double kFlat = 1.2;             // of twice the wall: jaws this near hold the vessel shut
 constexpr std::uint32_t kOff[2] = {8, 16};  // buttons (world/inputs.h)
-
-void say(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
-  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
-}
 
 double towards(double now, double wanted, double most) noexcept { return now + std::clamp(wanted - now, -most, most); }
 

@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "world/blade_arm.h"
 #include "world/describe.h"
+#include "world/observe.h"
 
 namespace filum {
 namespace {
@@ -16,10 +17,6 @@ constexpr double kMargin = 1e-3;   // [m], that tissue may move in a step
 constexpr double kClear = 2e-3;    // [m], distance from the tissue at which a blade may be given another form
 constexpr int kSights = 19;        // lines of sight to the target
 constexpr int kLookEvery = 10;     // steps between two looks at the target
-
-void event(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
-  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
-}
 
 /// Points spread evenly over the unit disc (sunflower).
 Vec3 sight(int k) noexcept {
@@ -108,7 +105,7 @@ void BrainScene::step(const Inputs& inputs, BrainState& s, std::array<std::int32
   if (pushed) push_tissue(s);
   s.seen = s.fem.u;
   summary_ = fem_.step(s.fem, contact_.moved(), &loads_);
-  if (!summary_.sound) event(o, "solver-trouble", -1, summary_.residual, "N");
+  if (!summary_.sound) say(o, "solver-trouble", -1, summary_.residual, "N");
   if (law_) law_->remember(s.fem.u, s.memory);
   contact_.read(fem_, s.fem.u, blades_, s.contacts);
   feel(s, o.step);
@@ -157,9 +154,9 @@ void BrainScene::change_form(std::size_t i, BrainState& s, Observation& o) noexc
   const bool free = blade.parked == 0 && std::none_of(s.contacts.begin(), s.contacts.end(), [&](const BladeContact& c) { return c.blade == static_cast<std::int32_t>(i); });
   if (free && clear_of_tissue(s, i, surfaces_[i][next])) {
     blade.form = static_cast<std::int32_t>(next);
-    event(o, "blade-changed", static_cast<int>(i), static_cast<double>(next), "-");
+    say(o, "blade-changed", static_cast<int>(i), static_cast<double>(next), "-");
   } else {
-    event(o, "blade-change-refused", static_cast<int>(i), blade.parked != 0 ? 1.0 : 0.0, "-");
+    say(o, "blade-change-refused", static_cast<int>(i), blade.parked != 0 ? 1.0 : 0.0, "-");
   }
 }
 
@@ -212,7 +209,7 @@ void BrainScene::pull_veins(BrainState& s, Observation& o) noexcept {
     const double length = span.norm(), force = v.stiffness * std::max(0.0, length - v.slack);
     if (force > v.strength) {
       s.torn[k] = 1;
-      event(o, "vein-torn", -1, force, "N");
+      say(o, "vein-torn", -1, force, "N");
     } else if (force > 0.0) {
       loads_.col(v.node) = span * (force / length);
     }
@@ -257,13 +254,13 @@ void BrainScene::report(BrainState& s, Observation& o) noexcept {
     }
     blade.slid = sliding > 0.0 ? blade.slid + sliding : 0.0;
     if (blade.slid > model_->slip_distance) {
-      event(o, "slip", static_cast<int>(i), blade.slid, "m");
+      say(o, "slip", static_cast<int>(i), blade.slid, "m");
       blade.slid = 0.0;
     }
-    if (edge > model_->edge_pressure && blade.cutting == 0) event(o, "edge-cut", static_cast<int>(i), edge, "Pa");
+    if (edge > model_->edge_pressure && blade.cutting == 0) say(o, "edge-cut", static_cast<int>(i), edge, "Pa");
     blade.cutting = edge > (blade.cutting != 0 ? 0.8 : 1.0) * model_->edge_pressure ? 1 : 0;
     const double force = blades_[i].force.norm(), share = force > model_->strongest ? model_->strongest / force : 1.0;
-    if (share < 1.0 && blade.force.norm() < 0.999 * model_->strongest) event(o, "force-limit", static_cast<int>(i), force, "N");
+    if (share < 1.0 && blade.force.norm() < 0.999 * model_->strongest) say(o, "force-limit", static_cast<int>(i), force, "N");
     blade.force = share * blades_[i].force;
     blade.torque = share * blades_[i].torque;
   }

@@ -5,6 +5,7 @@
 #include "collision/segment_distance.h"
 #include "world/measured_model.h"
 #include "world/needle_model.h"
+#include "world/observe.h"
 
 namespace filum {
 namespace {
@@ -54,10 +55,6 @@ void follow(State& s, const ArcChange& c, double whole_before) noexcept {
   touches.n = kept;
   for (GraspPoint& g : s.memory.grasps) g.arc = c.after(g.arc);
   for (double* arc : {&s.cut_low, &s.cut_high, &s.break_arc}) *arc = *arc < 0.0 || c.gone(*arc) ? -1.0 : c.after(*arc);
-}
-
-void say(Observation& o, const char* name, double value) noexcept {
-  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, -1, value, "-"};
 }
 
 }  // namespace
@@ -144,13 +141,13 @@ void FreshSuture::hear(State& s, std::uint32_t buttons, Observation& o) const no
   s.sutures.down = down;
   if (!pressed) return;
   if (const char* why = refusal(s)) {
-    say(o, why, model_.sutures - s.sutures.taken);
+    say(o, why, -1, model_.sutures - s.sutures.taken, "-");
     return;
   }
   clear(s);
   lay(s);
   ++s.sutures.taken;
-  say(o, "suture-fresh", model_.sutures - s.sutures.taken);
+  say(o, "suture-fresh", -1, model_.sutures - s.sutures.taken, "-");
 }
 
 }  // namespace filum

@@ -5,6 +5,7 @@
 
 #include "base/stage_clock.h"
 #include "world/needle_model.h"
+#include "world/observe.h"
 
 namespace filum {
 namespace {
@@ -14,10 +15,6 @@ constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
 constexpr double kApart = 20e-6;        // [m], between thread and needle: at kSwage 0.4 N, as much as a thread of 10-0 bears
 constexpr double kClosing = 1e-3;       // [rad/s], of jaws that close
 constexpr int kMostRepeats = 4;         // of a step that ends with them apart
-
-void say(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
-  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
-}
 
 }  // namespace
 

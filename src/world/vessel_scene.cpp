@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "world/observe.h"
 
 namespace filum {
 namespace {
@@ -12,10 +13,6 @@ constexpr std::uint32_t kCut = 2, kNext = 4;             // buttons (world/input
 constexpr int kFalling = 125;    // steps in which an empty vein loses its pressure at the start
 constexpr double kLying = 3e-4;  // [m/s], of a wall that lies
 constexpr int kSettling = 500;  // steps at most until the tissue stands still at the start
-
-void say(Observation& o, const char* name, int tool, double value, const char* unit) noexcept {
-  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, tool, value, unit};
-}
 
 PassObservation::State state_of(const NeedleTrack& t) noexcept {
   if (t.ended == 2) return PassObservation::State::torn;

@@ -68,8 +68,7 @@ struct World::Impl {
                                           [&](const GraspPoint& p) { return p.tool == tool; }));
   }
   void event(const char* name, int tool, double value, const char* unit) noexcept {
-    if (observation.n_events < static_cast<int>(observation.events.size()))
-      observation.events[static_cast<std::size_t>(observation.n_events++)] = {name, tool, value, unit};
+    say(observation, name, tool, value, unit);
   }
 };
 
