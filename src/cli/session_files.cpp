@@ -70,7 +70,7 @@ std::string message_of(Json result, const std::string& session) {
     if (!result.contains(key)) return {};
     message[key] = std::move(result[key]);
   }
-  for (const char* key : {"verdict", "pressure_map", "stitches", "spacings_m", "lapses", "lapse_rules", "scale", "leak", "clamps", "milking", "thrombosis_factors"})
+  for (const char* key : {"verdict", "pressure_map", "stitches", "spacings_m", "lapses", "lapse_rules", "scale", "leak", "clamps", "milking", "handling", "thrombosis_factors"})
     if (result.contains(key)) message[key] = std::move(result[key]);
   return json_text(message);
 }

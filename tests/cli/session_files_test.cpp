@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "short_session.h"
@@ -59,6 +60,18 @@ TEST_F(SessionFiles, WhatATaskDoesNotMeasureIsNotTold) {
   EXPECT_EQ(message.at("type"), "result");
   EXPECT_TRUE(message.at("session").is_null());
   EXPECT_TRUE(message.at("knot").is_null());
+}
+
+/// A part that was left out here was measured and never seen.
+TEST_F(SessionFiles, EveryPartOfAResultReachesTheBrowser) {
+  std::ifstream file(std::string(FILUM_SOURCE_DIR) + "/src/server/messages.schema.json");
+  const auto schema = nlohmann::json::parse(file);
+  nlohmann::json whole = nlohmann::json::object();
+  for (const auto& [key, _] : schema.at("$defs").at("Result").at("properties").items())
+    if (key != "type" && key != "session") whole[key] = key + " of this result";
+  const auto message = nlohmann::json::parse(result_message(whole.dump(), "s"));
+  EXPECT_TRUE(message.contains("handling"));
+  for (const auto& [key, value] : whole.items()) EXPECT_EQ(message.value(key, nlohmann::json()), value) << key;
 }
 
 TEST_F(SessionFiles, StoredTextThatIsNoResultGivesNoMessage) {
