@@ -77,7 +77,7 @@ class WallCapstan {
   WallCapstan(double mu, double angle)
       : wall_(held_tube()), w_(under_pressure(wall_)), probe_(limp(), over_the_tube(widest(wall_.mesh(), w_) + 5e-6, angle)), contact_(probe_.state.n),
         away_(std::sin(angle), std::cos(angle), 0.0) {
-    contact_.friction = mu;
+    contact_.law.friction = mu;
     probe_.options = RodStepOptions();
     probe_.options.dt = wall_.options().dt;
     probe_.options.gravity.setZero();

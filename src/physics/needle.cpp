@@ -54,7 +54,7 @@ LinePoint on_line(double u, double limit, double k) noexcept {
 }  // namespace
 
 NeedleBody::NeedleBody(NeedleShape shape, int n_tools) : tools(static_cast<std::size_t>(n_tools)), shape_(std::move(shape)), inertia_N_(shape_.inertia()) {
-  tethers.reserve(64);
+  tethers.reserve(128);
   for (int k = 0; k < kNeedleSamples; ++k) sample_arc_[static_cast<std::size_t>(k)] = shape_.length() * k / (kNeedleSamples - 1);
 }
 
@@ -167,6 +167,10 @@ void NeedleBody::add_jaws(const NeedleOptions& o, Trial& t) noexcept {
 void NeedleBody::add_tethers(const NeedleOptions& o, Trial& t) noexcept {
   for (RodTether& c : tethers) {
     const Vec3 r = t.X.q * shape_.point(c.arc), d = t.X.p + r - c.anchor;
+    if (c.across != Vec3::Zero()) {
+      add_surface(c, d, r, t);
+      continue;
+    }
     c.force = -(c.stiffness * d);
     Mat3 k = c.stiffness;
     t.energy += 0.5 * d.dot(c.stiffness * d);
@@ -181,6 +185,17 @@ void NeedleBody::add_tethers(const NeedleOptions& o, Trial& t) noexcept {
     }
     add_point(r, c.force, k, t.gradient, t.stiffness);
   }
+}
+
+/// A tether that is a surface (rod_tether.h): it pushes only, with friction in its plane.
+void NeedleBody::add_surface(RodTether& c, const Vec3& d, const Vec3& r, Trial& t) noexcept {
+  const Vec3 normal = c.along.cross(c.across), slip = d - d.dot(normal) * normal;
+  const bool lifted = d.dot(normal) > 0.0;
+  const FrictionPoint f = coulomb(slip, normal, c.limit, 1.0, c.stick);
+  c.force = lifted ? f.force : Vec3(f.force - c.stiffness * d);
+  c.slid = (slip - f.xi).norm();
+  t.energy += f.energy + (lifted ? 0.0 : 0.5 * d.dot(c.stiffness * d));
+  add_point(r, c.force, lifted ? f.stiffness : Mat3(f.stiffness + c.stiffness), t.gradient, t.stiffness);
 }
 
 void NeedleBody::evaluate(const NeedleState& s, const NeedleOptions& o, Trial& t) noexcept {

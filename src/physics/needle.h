@@ -114,6 +114,7 @@ class NeedleBody {
   void add_sheet(const NeedleState& s, const NeedleOptions& o, Trial& t) noexcept;
   void add_jaws(const NeedleOptions& o, Trial& t) noexcept;
   void add_tethers(const NeedleOptions& o, Trial& t) noexcept;
+  static void add_surface(RodTether& c, const Vec3& d, const Vec3& r, Trial& t) noexcept;
   void fix_loads(const NeedleOptions& o) noexcept;
   void finish_grips(NeedleState& s) const noexcept;
   double roll_limit(const NeedleTool& tool) const noexcept;

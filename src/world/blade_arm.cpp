@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/observe.h"
+
 namespace filum {
 namespace {
 
 constexpr std::uint32_t kClutch = 1u, kForm = 2u, kNext = 4u;
-
-void event(Observation& o, const char* name, std::size_t tool) noexcept {
-  if (o.n_events < static_cast<int>(o.events.size())) o.events[static_cast<std::size_t>(o.n_events++)] = {name, static_cast<int>(tool), 0.0, "-"};
-}
 
 /// The pose on the way from a to b that is no further than the limits allow.
 Pose towards(const Pose& a, const Pose& b, double far, double turn) noexcept {
@@ -30,7 +28,7 @@ void take_buttons(std::uint32_t buttons, std::size_t i, BladeState& blade, Obser
   blade.toggling = down;
   if (blade.parked != 2) blade.parked = (buttons & kClutch) != 0 ? 1 : 0;
   if ((before != 0) == (blade.parked != 0)) return;
-  event(o, blade.parked != 0 ? "arm-locked" : "arm-freed", i);
+  say(o, blade.parked != 0 ? "arm-locked" : "arm-freed", static_cast<int>(i), 0.0, "-");
   if (blade.parked != 0) blade.kept_force = blade.force;
   else blade.X_DB = blade.X_WD.inverse() * blade.X_W;
 }
@@ -68,7 +66,7 @@ bool asks_for_form(const BrainModel& model, std::size_t i, const ToolInput& in, 
 void move_blade(const BrainModel& model, std::size_t i, const ToolInput& in, double time, double dt, BladeState& blade, std::int32_t& valid, Observation& o) noexcept {
   const bool sound = in.valid && in.X_WD.finite() && std::abs(in.X_WD.q.norm() - 1.0) < 1e-3;
   const InputState now = input_state(sound, valid);
-  if (const char* name = input_event(valid, now)) event(o, name, i);
+  if (const char* name = input_event(valid, now)) say(o, name, static_cast<int>(i), 0.0, "-");
   valid = now;
   const bool placing = !model.placed[i].empty() && time < model.placed[i].back().t;
   if (sound) {

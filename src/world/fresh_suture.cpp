@@ -47,7 +47,7 @@ void follow(State& s, const ArcChange& c, double whole_before) noexcept {
   TouchState& touches = s.tissue.touches;
   int kept = 0;
   for (int k = 0; k < touches.n; ++k) {
-    ThreadTouch touch = touches.touches[static_cast<std::size_t>(k)];
+    SurfaceTouch touch = touches.touches[static_cast<std::size_t>(k)];
     if (c.gone(touch.arc)) continue;
     touch.arc = c.after(touch.arc);
     touches.touches[static_cast<std::size_t>(kept++)] = touch;
@@ -130,6 +130,7 @@ void FreshSuture::lay(State& s) const noexcept {
   const NeedleShape& n = model_.needle->shape;
   s.needle = NeedleState();
   s.needle.X_WN = model_.needle->start;
+  s.tissue.wire = TouchState();
   s.tissue.tracks.point = PointContact();
   s.tissue.tracks.point_before = s.needle.X_WN * n.point(n.length());
   s.overloaded = 0.0;

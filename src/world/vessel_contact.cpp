@@ -7,12 +7,7 @@
 namespace filum {
 namespace {
 
-constexpr double kDeepest = 30e-6;     // [m], overlap that counts: what has gone deeper comes back as gently
-constexpr double kTrackReach = 0.3e-3;  // [m], of thread on either side of a track that is left alone
 constexpr double kSpacing = 0.1e-3;     // [m], of samples along the thread at most: less than a wall is thick
-constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands for, either way
-constexpr double kShallow = 50e-6;      // [m], half a wall: from deeper within a touch stays where it went in
-constexpr double kLightest = 5e-6;      // [N], half of what the wall's step leaves unbalanced
 constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
@@ -24,26 +19,6 @@ Vec3 at_arc(const RodState& t, double arc) noexcept {
 bool parted(const RodState& t, double arc) noexcept {
   const auto [edge, f] = locate_arc(t, arc);
   return t.alive[edge] == 0 && f > 1e-6 && f < 1.0 - 1e-6;
-}
-
-/// What a touch does to the wall in its coming step. The thread is no post: a wall that comes on at 5 mm/s would be dented by one of 200 N/m, where the thread weighs
-/// 0.1 ug and moves off. It bears at most twice what it bore, in the next step as much again; what is light just weighs.
-void lean(VesselWall& wall, const WallState& w, const ThreadTouch& touch, const RodTether& t, double stiffness) noexcept {
-  if (touch.load < kLightest) {
-    wall.add_load(w, touch.at, -t.force);
-    return;
-  }
-  WallSlip push;
-  push.along = -touch.normal;
-  push.force = touch.load;
-  push.stick = stiffness;
-  push.high = 2.0 * touch.load;
-  wall.add_load(w, touch.at, Vec3::Zero(), Mat3::Zero(), push);
-  if (t.limit <= 0.0) return;
-  RodTether rub = t;
-  rub.stiffness.setZero();
-  rub.force -= t.force.dot(touch.normal) * touch.normal;
-  load_wall(wall, w, touch.at, rub, wall.options().dt);
 }
 
 /// Stretches of the thread that tracks hold, [m] of its arc.
@@ -76,13 +51,6 @@ class InTracks {
   std::size_t n_ = 0;
 };
 
-bool near_one_of(std::span<const ThreadTouch> touches, double arc) noexcept {
-  return std::any_of(touches.begin(), touches.end(), [&](const ThreadTouch& t) { return std::abs(t.arc - arc) < kOneTouch; });
-}
-bool near_one_of(std::span<const double> arcs, double arc) noexcept {
-  return std::any_of(arcs.begin(), arcs.end(), [&](double a) { return std::abs(a - arc) < kOneTouch; });
-}
-
 }  // namespace
 
 VesselContact::VesselContact(int thread_capacity) : before_(Points::Zero(3, thread_capacity)) {}
@@ -92,18 +60,8 @@ void VesselContact::hold(const VesselWall& wall, const WallState& w, const Touch
   before_.leftCols(thread.n) = thread.x.leftCols(thread.n);
   first_ = static_cast<int>(on_thread.size());
   for (int k = 0; k < s.n && on_thread.size() < on_thread.capacity(); ++k) {
-    const ThreadTouch& touch = s.touches[static_cast<std::size_t>(k)];
-    RodTether t;
-    t.arc = touch.arc;
-    t.anchor = wall.position(w, touch.at);
-    t.stiffness = stiffness * touch.normal * touch.normal.transpose();
-    const double depth = (t.anchor - at_arc(thread, touch.arc)).dot(touch.normal);
-    if (depth > kDeepest) t.anchor -= (depth - kDeepest) * touch.normal;
-    t.along = touch.normal.unitOrthogonal();
-    t.across = touch.normal.cross(t.along);
-    t.stick = stiffness;
-    t.limit = friction * touch.load;
-    on_thread.push_back(t);
+    const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
+    on_thread.push_back(hold_touch(wall, w, touch, law, at_arc(thread, touch.arc)));
   }
 }
 
@@ -116,24 +74,17 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
   for (int k = 0; k < s.n; ++k) {
     const auto index = static_cast<std::size_t>(first_ + k);
     if (index >= on_thread.size()) break;
-    ThreadTouch touch = s.touches[static_cast<std::size_t>(k)];
+    SurfaceTouch touch = s.touches[static_cast<std::size_t>(k)];
     const RodTether& t = on_thread[index];
     touch.load = std::max(0.0, t.force.dot(touch.normal));
     if (in_tracks.hold(touch.arc) || parted(thread, touch.arc)) continue;
-    const Vec3 x = at_arc(thread, touch.arc);
-    const double height = (x - wall.position(w, touch.at)).dot(touch.normal);
-    const Vec3 rub = t.force - t.force.dot(touch.normal) * touch.normal;
-    const WallCrossing near = wall.nearest(w, x + rub / stiffness, 0.1e-3);  // the bristle stays bent by what friction bears: what sticks does not creep
-    const bool same_side = near.found && near.normal.dot(touch.normal) > 0.3 && height > -kShallow;  // deep within, the far wall may be nearest
-    if (height >= 0.0 && !(same_side && near.fraction < 0.0)) {  // outside again
+    const TouchFooting footing = find_footing(wall, w, touch, t, law, at_arc(thread, touch.arc));
+    if (footing.off) {
       come_out_[static_cast<std::size_t>(n_come_out_++)] = touch.arc;
       continue;
     }
-    lean(wall, w, touch, t, stiffness);
-    if (same_side) {  // slides along it
-      touch.at = near.point;
-      touch.normal = near.normal;
-    }
+    lean_touch(wall, w, touch, t, law);
+    slide_touch(touch, footing);
     s.touches[static_cast<std::size_t>(kept++)] = touch;
   }
   s.n = kept;
@@ -180,9 +131,9 @@ bool VesselContact::spoken_for(const TouchState& s, double arc) const noexcept {
 }
 
 void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now) const noexcept {
-  const WallCrossing c = wall.crossing(w, before, now);
-  if (!c.found || (now - before).dot(c.normal) >= 0.0) return;
-  ThreadTouch touch;
+  const WallCrossing c = meet_surface(wall, w, before, now);
+  if (!c.found) return;
+  SurfaceTouch touch;
   touch.arc = arc;
   touch.at = c.point;
   touch.normal = c.normal;
@@ -223,7 +174,7 @@ void VesselContact::press(VesselWall& wall, const WallState& w, const std::vecto
           const Vec3 way = q - wall.position(w, near.point);  // at a rim or a ridge not the normal of either face
           const Vec3 normal = near.fraction > 1e-9 ? Vec3(way / near.fraction) : near.normal;
           const Vec3 lever = q - states[i].X_WT.p, carried = wall.options().dt * (states[i].v + states[i].w.cross(lever));
-          const int number = wall.add_push(w, near.point, normal, radius - near.fraction, stiffness, jaw_friction, carried);
+          const int number = wall.add_push(w, near.point, normal, radius - near.fraction, law.stiffness, jaw_friction, carried);
           pushes_[static_cast<std::size_t>(n_pushes_++)] = {number, static_cast<int>(i), lever};
         }
       }

@@ -3,10 +3,8 @@
 // surface, and the tissue gets the opposite loads.
 //
 // Thread: a sample (nodes, and places 0.1 mm apart between them) that crosses the surface inwards by its motion relative to the wall is remembered with the place
-// where it crossed (so that it cannot come out on the far side, however fast it goes) and is pushed back out along the normal there, with Coulomb friction in the
-// surface, until it is above that place again. The place follows what slides only: it is where x + f/k is nearest to the surface, f the friction borne by
-// bristles of stiffness k (return mapping), so that what sticks does not creep. Thread and wall move in turn: first the thread past the wall as it stands, then the wall past the thread. In the wall's turn
-// a sample x was, as the wall's point p next to it sees it, at x + h v(p). Where a track holds the thread nothing is looked for.
+// where it crossed and is pushed back out (surface_touch.h). Thread and wall move in turn: first the thread past the wall as it stands, then the wall past the thread.
+// In the wall's turn a sample x was, as the wall's point p next to it sees it, at x + h v(p). Where a track holds the thread nothing is looked for.
 // Jaws: spheres along them that push the faces they touch along their normals and drag them by friction, within the tissue's own step.
 // Neglects: thickness of the thread, rims thinner than 0.1 mm between two samples, jaws beyond 1.2 mm from their tips.
 // Test: vessel_contact_test.
@@ -16,7 +14,7 @@
 #include "physics/implicit_rod.h"
 #include "physics/instrument.h"
 #include "physics/needle_track.h"
-#include "world/vessel_state.h"
+#include "world/surface_touch.h"
 
 namespace filum {
 
@@ -24,8 +22,7 @@ class VesselContact {
  public:
   explicit VesselContact(int thread_capacity);
 
-  double stiffness = 200.0;    // [N/m], of a touch
-  double friction = 0.2;       // [-], thread on tissue
+  TouchLaw law;                // of the thread; its stiffness is the jaws' as well
   double jaw_friction = 0.15;  // [-], steel on wet tissue
 
   void hold(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread, std::vector<RodTether>& on_thread) noexcept;

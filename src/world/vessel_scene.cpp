@@ -57,7 +57,7 @@ std::uint64_t hash_blood(const BloodState& b, std::uint64_t h) noexcept {
 }  // namespace
 
 VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity)
-    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity) {
+    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), wire_(needle) {
   if (model.lumen) blood_ = std::make_unique<BloodFlow>(model_);
 }
 
@@ -94,11 +94,12 @@ void VesselScene::size_observation(Observation& o) const {
   o.tissue.positions = model_.mesh.nodes;
 }
 
-void VesselScene::hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle,
+void VesselScene::hold(const VesselState& s, const Pose& X_WN, bool held, const RodState& thread, std::vector<RodTether>& on_needle,
                        std::vector<RodTether>& on_thread) noexcept {
   wall_.clear_loads();
   tracks_.hold(wall_, s.wall, s.tracks, X_WN, &thread, on_needle, on_thread);
   contact_.hold(wall_, s.wall, s.touches, thread, on_thread);
+  if (model_.wire_touches) wire_.hold(wall_, s.wall, s.wire, s.tracks, X_WN, held, on_needle);
 }
 
 void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept {
@@ -187,12 +188,13 @@ void VesselScene::feel(VesselState& s, const std::vector<InstrumentParameters>& 
     if (s.grips[i].n > 0) feel_wall(wall_, s.wall, {tools[i], states[i]}, s.grips[i], force[i], torque[i]);
 }
 
-void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
+void VesselScene::step(VesselState& s, const Pose& X_WN, bool held, const RodState& thread, const std::vector<RodTether>& on_needle,
                        const std::vector<RodTether>& on_thread, Observation& o) noexcept {
   std::array<TrackEvent, 8> events;
   const int n = tracks_.follow(wall_, s.wall, s.tracks, X_WN, &thread, model_.wall.dt, on_needle, on_thread, events.data(), static_cast<int>(events.size()));
   for (int k = 0; k < n; ++k) say(o, events[static_cast<std::size_t>(k)].name, -1, events[static_cast<std::size_t>(k)].value, "N");
   contact_.follow(wall_, s.wall, s.touches, s.tracks, thread, on_thread);
+  if (model_.wire_touches) wire_.follow(wall_, s.wall, s.wire, s.tracks, X_WN, held, on_needle);
   for (int part = 0; part < std::min(2, wall_.n_parts()); ++part) wall_.set_pressure(part, s.pressure[static_cast<std::size_t>(part)]);
   move_clamp(s);
   wall_.meet(s.wall);
@@ -201,7 +203,9 @@ void VesselScene::step(VesselState& s, const Pose& X_WN, const RodState& thread,
   if (!summary.sound) say(o, "solver-trouble", -1, summary.residual, "N");
   wall_.refit(s.wall);
   tracks_.carry_point(wall_, s.wall, s.tracks);
+  if (model_.wire_touches) wire_.feel(wall_, s.wire);
   contact_.overtake(wall_, s.wall, s.touches, s.tracks, thread);
+  if (model_.wire_touches) wire_.overtake(wall_, s.wall, s.wire, s.tracks, X_WN);
 }
 
 void VesselScene::observe(const VesselState& s, const RodState& thread, Observation& o) const noexcept {
@@ -263,10 +267,12 @@ std::uint64_t hash_vessel(const VesselState& s) noexcept {
       h = hash_bytes(values.data(), sizeof(values), hash_point(knot.at, h));
     }
   }
-  for (int k = 0; k < s.touches.n; ++k) {
-    const ThreadTouch& touch = s.touches.touches[static_cast<std::size_t>(k)];
-    const std::array<double, 5> row = {touch.arc, touch.load, touch.normal.x(), touch.normal.y(), touch.normal.z()};
-    h = hash_bytes(row.data(), sizeof(row), hash_point(touch.at, h));
+  for (const TouchState* touches : {&s.touches, &s.wire}) {
+    for (int k = 0; k < touches->n; ++k) {
+      const SurfaceTouch& touch = touches->touches[static_cast<std::size_t>(k)];
+      const std::array<double, 5> row = {touch.arc, touch.load, touch.normal.x(), touch.normal.y(), touch.normal.z()};
+      h = hash_bytes(row.data(), sizeof(row), hash_point(touch.at, h));
+    }
   }
   const ClampState& c = s.clamp;
   const std::array<double, 5> clamp = {c.gap, c.turn, static_cast<double>(c.over), static_cast<double>(c.closing), static_cast<double>(c.down)};

@@ -10,6 +10,7 @@
 #include "world/blood_flow.h"
 #include "world/vessel_contact.h"
 #include "world/vessel_model.h"
+#include "world/wire_contact.h"
 
 namespace filum {
 
@@ -21,7 +22,7 @@ class VesselScene {
   VesselState start(const Vec3& point);
   void size_observation(Observation& o) const;
 
-  void hold(const VesselState& s, const Pose& X_WN, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
+  void hold(const VesselState& s, const Pose& X_WN, bool held, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
   /// The clamp's buttons: `next` (4) turns it over and back, or to the next of the scene's turns, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
   /// step then carries the stumps along. 8 and 16 take the upstream and the downstream clamp off; then it moves no more.
   void handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept;
@@ -39,7 +40,7 @@ class VesselScene {
   void feel(VesselState& s, const std::vector<InstrumentParameters>& tools, const std::vector<InstrumentState>& states, std::vector<Vec3>& force,
             std::vector<Vec3>& torque) const noexcept;
   /// After needle and thread have moved: loads, punctures and tears, then the tissue's own step.
-  void step(VesselState& s, const Pose& X_WN, const RodState& thread, const std::vector<RodTether>& on_needle,
+  void step(VesselState& s, const Pose& X_WN, bool held, const RodState& thread, const std::vector<RodTether>& on_needle,
             const std::vector<RodTether>& on_thread, Observation& o) noexcept;
   void observe(const VesselState& s, const RodState& thread, Observation& o) const noexcept;
   /// After a state was restored.
@@ -53,6 +54,7 @@ class VesselScene {
   VesselWall wall_;
   NeedleTracks tracks_;
   VesselContact contact_;
+  WireContact wire_;
   std::unique_ptr<BloodFlow> blood_;  // of two stumps in clamps
 };
 

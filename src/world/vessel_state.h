@@ -10,18 +10,20 @@
 
 namespace filum {
 
-/// A point of the thread that pushes against the surface. Part of the state.
-struct ThreadTouch {
-  double arc = 0.0;            // [m], of the thread
+/// A point of the thread or of the needle that pushes against the surface. Part of the state.
+struct SurfaceTouch {
+  double arc = 0.0;            // [m], of the thread, or of the needle from its swage
   WallPoint at;                // of the surface
   Vec3 normal = Vec3::UnitZ();  // outward, when last looked at
   double load = 0.0;           // [N], normal, in the last step
+  Vec3 push = Vec3::Zero();    // [N], of the wall on a needle, in the last step
+  double firm = 0.0;           // [N/m], by which that changes as a needle in hand moves
 };
 inline constexpr int kMostTouches = 96;
 
 struct TouchState {
   std::int32_t n = 0;
-  std::array<ThreadTouch, kMostTouches> touches;
+  std::array<SurfaceTouch, kMostTouches> touches;
 };
 
 /// The double clamp as the trainee's buttons have left it. Part of the state.
@@ -49,7 +51,7 @@ struct BloodState {
 struct VesselState {
   WallState wall;
   TrackState tracks;
-  TouchState touches;
+  TouchState touches, wire;            // of the thread, of the needle
   ClampState clamp;
   BloodState blood;
   std::array<WallGrip, 3> grips;       // of each tool

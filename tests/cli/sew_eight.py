@@ -2,10 +2,12 @@
 """Writes a demonstration of anastomosis-8, stitch by stitch, each tried from the state that the one before ended in.
 
   sew_eight.py STATE.json [STITCHES]     (in an empty folder; FILUM_ROOT: the project, REHEARSAL: its build/tests/.../filum_rehearsal,
-                                          TASK: another task in which each stitch has a fresh suture and the clamp is turned on once)
+                                          TASK: another task in which each stitch has a fresh suture and the clamp is turned on once;
+                                          HINTS: a STATE.json of an earlier program, whose choices are tried first)
 
 The hands are those of sew_eight_hands.yaml, moved along with the cut edges as they are seen when a stitch begins (keys `at: { edge: N }`), with some lengths
-to choose. Several tries run at a time (TRIES=2); the first whose bites, then knot, are good is taken. STATE.json holds what was found; from it the search goes on, and
+to choose. Several tries run at a time (TRIES=2); the first whose bites, then knot, are good is taken; where an earlier knot opens
+in every try, that stitch is taken back and sewn otherwise. STATE.json holds what was found; from it the search goes on, and
 does it all again first if the processes of filum_rehearsal sleep no more (a copy of sew_eight_found.json is a beginning); STATE.json.log tells each try. The script of all stitches found is STATE.json.yaml."""
 import itertools, json, os, random, re, subprocess, sys, threading, time
 
@@ -14,10 +16,13 @@ REHEARSAL = os.environ.get('REHEARSAL', ROOT + '/build/tests/filum_rehearsal')
 TRIES = int(os.environ.get('TRIES', '2'))
 TASK = os.environ.get('TASK', 'anastomosis-8')
 SECONDS = 91.0                                            # of the script, a stitch
+HINTS = json.load(open(os.environ['HINTS']))['stitches'] if 'HINTS' in os.environ else []
+BITES = ('aside', 'enter', 'leave', 'press', 'take')      # what is chosen before the knot
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
-FIRM = 0.45                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
+FIRM = 0.7                                                # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
 WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
 LOOP = 3.2                                                # [mm], most of a knot's loop
+OPENED = 'an earlier knot opened'
 PLACE = 18.0                                              # [degrees], most by which a stitch is beside its place
 
 
@@ -176,8 +181,12 @@ def follow(name, check, given_up, pipe=None, order=None):
         time.sleep(0.5)
 
 
+def opened(k, s): return any(n['knot'] != 'square' for n in s['stitches'][:k])
+
+
 def bites_wrong(k, s, tau):
     passes, drawn = s['passes'][2 * k:], tau > 30
+    if opened(k, s): return OPENED
     if tau < 18: return None if passes and passes[0]['bites'][1] >= INNER and all(p['side'] != passes[0]['side'] for p in passes[1:]) else 'first wall %s' % [p['bites'] for p in passes]
     if len(passes) != 2 or not passes[1]['out']: return 'passes %s' % [(p['state'], p['side'], p['bites']) for p in passes]
     if min(passes[0]['bites'][1], passes[1]['bites'][0]) < INNER: return 'inner bites %s' % [p['bites'] for p in passes]
@@ -190,6 +199,7 @@ def bites_wrong(k, s, tau):
 
 
 def knot_wrong(k, s, tau):
+    if opened(k, s): return OPENED
     square = [n for n in s['knots'] if n['class'] == 'square']
     if any(p['state'] != 2 or p['torn'] for p in s['passes']): return 'torn'
     if len(square) < k + (tau > 76) or (tau > 80 and any(n['knot'] != 'square' for n in s['stitches'])): return 'knots %s' % [(n['class'], n['loop']) for n in s['knots']]
@@ -219,6 +229,7 @@ def race(tries, run, most, log):
 def bite_choices(random_, k):
     """Between stitches that hold the edges together the second one is nearer: there the needle is brought on farther before it comes up."""
     nearer = ((0, -.24), (.3, .1), .2), ((0, -.24), (.27, .1), .2), ((0, -.24), (.42, .1), .2), ((0, -.24), (.36, .1), .2)
+    if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name in BITES}
     usual = (((0, -.24), (.2, .04), .18), ((-.03, -.24), (.22, .03), .18), ((.045, -.27), (.12, .06), .25), ((.03, -.31), (.2, -.05), .2),
              ((-.05, -.22), (.12, .04), .18), ((-.03, -.2), (.22, 0), .18), ((-.03, -.24), (.22, .03), .22), ((.045, -.16), (.14, .02), .18))
     for enter, leave, press in usual[:2] if k > 2 else (): yield from (dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7) for aside in (0, .12, -.12, .2, -.2))
@@ -230,6 +241,7 @@ def bite_choices(random_, k):
 
 def knot_choices(random_, k):
     """Before the ends of the last stitch are cut, the clamp may come nearer: it stays there when blood is let in."""
+    if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name not in BITES}
     lasts = (.4, .18, .6) if k + 1 == STITCHES else (.18,)
     yield from (dict(slide=slide, let_go=(0, -.3, -.45), first=first, firm=30, cut=1.3, last=last) for last in lasts for slide in SLIDES for first in (10, 9, 11))
     while True:
@@ -250,6 +262,14 @@ def do_again(state, file):
     state['pipe'] = file + '_again_%.1f' % end
 
 
+def take_back(state, log):
+    if not state.get('pipes') or state['pipes'][-1] is None or not sleeps(state['pipes'][-1]): return False
+    state.setdefault('avoid', []).append(state['stitches'].pop())
+    state['pipe'] = state['pipes'].pop()
+    log('stitch', len(state['stitches']) + 1, 'taken back')
+    return True
+
+
 def sew(state, file, random_, log):
     k, start = len(state['stitches']), len(state['stitches']) * SECONDS
     name = lambda kind, n: '%s_%d_%s%d_%d' % (file, k, kind, n, state['count'])
@@ -259,24 +279,33 @@ def sew(state, file, random_, log):
         _, wrong = follow(me, lambda s: bites_wrong(k, s, s['t'] - start), given_up, state['pipe'], 'go %s %s %g %g %g %g' % (me, script, start + 38, start + 14.2, start + 24.2, start + 37.8))
         return (choice, '%s_%.1f' % (me, start + 37.8)), wrong
     ways = bite_choices(random_, k)
+    wrongs = []
+    def said(kind):
+        def note(n, choice, wrong):
+            wrongs.append(wrong)
+            log(k, kind, n, choice, wrong)
+        return note
     for _ in range(6):
+        if len(wrongs) > 4 and k > 0 and all(w in (OPENED, 'another was good', 'good') for w in wrongs) and OPENED in wrongs: return take_back(state, log)
         state['count'] = state.get('count', 0) + 1
         if k == 0:
             script = write(file + '_first.yaml', [{}])
             with open(file + '_first.out', 'w') as out: subprocess.run([REHEARSAL, ROOT, TASK, script, file + '_first', '38', '37.8'], stdout=out, check=True)
             bites = ({}, file + '_first_37.8')
         else:
-            bites = race(ways, try_bites, 10, lambda n, c, w: log(k, 'bites', n, c, w))
+            bites = race(ways, try_bites, 10, said('bites'))
         if not bites: continue
         def try_knot(n, choice, given_up):
             me, chosen = name('k', n), dict(bites[0], **choice)
+            if json.loads(json.dumps(chosen)) in state.get('avoid', []): return None, 'was taken back'
             script = write(me + '.yaml', state['stitches'] + [chosen])
             stops = ' '.join('%g' % (start + t) for t in (54.0, 60.0, 71.9, 76.4, 90.9 if k + 1 < STITCHES else 89.5))
             _, wrong = follow(me, lambda s: knot_wrong(k, s, s['t'] - start), given_up, bites[1], 'go %s %s %g %s' % (me, script, start + 90.95, stops))
             return (chosen, '%s_%.1f' % (me, start + 90.9)), wrong
-        knot = race(knot_choices(random_, k), try_knot, 6, lambda n, c, w: log(k, 'knot', n, c, w))
+        knot = race(knot_choices(random_, k), try_knot, 6, said('knot'))
         if knot:
-            state['stitches'].append(knot[0])
+            state['stitches'].append(json.loads(json.dumps(knot[0])))
+            state.setdefault('pipes', []).append(state['pipe'])
             state['pipe'] = knot[1]
             return True
     return False

@@ -191,5 +191,40 @@ TEST(Needle, StepsAllocateNothingAndRepeatExactly) {
   EXPECT_EQ(a.q.coeffs(), b.q.coeffs());
 }
 
+/// A spring K pulls the middle of a free needle against a surface of stiffness k whose anchor is d higher: it comes up by k d / (k + K). Pulled sideways
+/// beyond the friction F of the surface it goes on until K bears just F, and a surface that it is above does nothing.
+TEST(Needle, ASurfacePushesAndRubsButDoesNotPull) {
+  constexpr double kSpring = 100.0, kSurface = 200.0, kFriction = 20e-6, kDepth = 1e-6, kSideways = 1e-6;
+  const NeedleShape shape;
+  NeedleBody body(shape, 0);
+  NeedleOptions o;
+  o.gravity.setZero();
+  const double middle = 0.5 * shape.length();
+  const auto rest = [&](double depth, double sideways) {  // where the middle comes to rest
+    NeedleState s;
+    const Vec3 start = s.X_WN * shape.point(middle);
+    for (int k = 0; k < 200; ++k) {
+      body.tethers.clear();
+      RodTether spring, surface;
+      spring.arc = surface.arc = middle;
+      spring.stiffness = kSpring * Mat3::Identity();
+      spring.anchor = start + sideways * Vec3::UnitX();
+      surface.stiffness = kSurface * Vec3::UnitZ() * Vec3::UnitZ().transpose();
+      surface.anchor = start + depth * Vec3::UnitZ();
+      surface.along = Vec3::UnitX();
+      surface.across = Vec3::UnitY();
+      surface.stick = kSurface;
+      surface.limit = kFriction;
+      body.tethers = {spring, surface};
+      body.step(s, o);
+    }
+    return Vec3(s.X_WN * shape.point(middle) - start);
+  };
+  EXPECT_NEAR(rest(kDepth, 0.0).z(), kSurface * kDepth / (kSurface + kSpring), 1e-10);
+  EXPECT_NEAR(rest(-kDepth, 0.0).z(), 0.0, 1e-10);
+  EXPECT_NEAR(rest(kDepth, kSideways).x(), kSideways - kFriction / kSpring, 1e-10);
+  EXPECT_NEAR(rest(kDepth, 0.1 * kSideways).x(), kSpring * 0.1 * kSideways / (kSpring + kSurface), 1e-10) << "sticks by the bristle";
+}
+
 }  // namespace needle_test
 }  // namespace filum

@@ -3,6 +3,7 @@ foreach(name blade_arm blood_flow brain_scene brain_section cortex falx fixtures
 endforeach()
 filum_test(world/needle_scene)
 filum_test(world/vessel_contact)
+filum_test(world/wire_contact)
 filum_test(world/vessel_scene)
 filum_test(world/end_to_side)
 filum_test(world/wall_file filum_evidence)

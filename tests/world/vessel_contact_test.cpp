@@ -132,7 +132,7 @@ TEST(VesselContact, AWallThatSlidesCarriesThreadByFriction) {
   EXPECT_NEAR(d.thread.x(2, 15) - start, 80e-6, 4e-6) << "carried";
   slide(80, 700);
   const Vec3 pull = d.rod.tethers.list[0].force + d.rod.tethers.list[1].force;
-  EXPECT_NEAR(pull.z() / pull.y(), d.contact.friction, 0.02 * d.contact.friction) << "Coulomb";
+  EXPECT_NEAR(pull.z() / pull.y(), d.contact.law.friction, 0.02 * d.contact.law.friction) << "Coulomb";
   EXPECT_LT(d.thread.x(2, 15) - start, 400e-6) << "of 700 um";
 }
 
@@ -149,12 +149,12 @@ TEST(VesselContact, ThreadThatFrictionHoldsDoesNotCreep) {
     const Vec3 pull = d.rod.tethers.list[0].force + d.rod.tethers.list[1].force;
     return pull.z() / std::abs(pull.y());
   };
-  for (int k = 0; k < 2000 && slope() < 0.5 * d.contact.friction; ++k) {
+  for (int k = 0; k < 2000 && slope() < 0.5 * d.contact.law.friction; ++k) {
     for (Vec3& a : d.anchor) a.z() += 1e-6;
     d.step({});
   }
   for (int k = 0; k < 1000; ++k) d.step({});
-  EXPECT_NEAR(slope(), 0.5 * d.contact.friction, 0.1 * d.contact.friction);
+  EXPECT_NEAR(slope(), 0.5 * d.contact.law.friction, 0.1 * d.contact.law.friction);
   EXPECT_NEAR(d.thread.x(2, 15), start, 2e-6);
 }
 
@@ -176,7 +176,7 @@ TEST(VesselContact, AFastWallDoesNotTunnel) {
   const TouchState up = pass({0, 1e-3, 0});
   ASSERT_GT(up.n, 4);
   for (int k = 0; k < up.n; ++k) {
-    const ThreadTouch& t = up.touches[static_cast<std::size_t>(k)];
+    const SurfaceTouch& t = up.touches[static_cast<std::size_t>(k)];
     EXPECT_NEAR(wall.depth_at(t.at), 0.0, 1e-9) << "on the outer surface";
     EXPECT_GT(t.normal.y(), 0.0);
   }

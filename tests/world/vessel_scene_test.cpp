@@ -76,6 +76,27 @@ TEST(VesselScene, FastJawsDoNotPassThroughTheCard) {
   }
 }
 
+/// The hand feels the coupling between it and the tool (haptics/hand_coupling.h): a jaw that is held back hangs behind, where one
+/// in free air has caught up.
+TEST(VesselScene, FastJawThatIsHeldBackIsFelt) {
+  const auto felt = [](double high) {  // [m], above the card; [N], at most, once the tool goes as fast as the hand
+    World w(scene());
+    Inputs in;
+    ToolInput& t = in.tools[0];
+    t.valid = true;
+    t.grip_angle = 0.0;
+    double most = 0.0;
+    for (int k = 0; k < 320; ++k) {
+      t.X_WD.p = Vec3(0.0, 1.5e-3, high + std::max(-0.4e-3, 10e-3 - std::max(0, k - 200) * 0.1 * 2e-3));
+      w.step(in);
+      if (k > 240) most = std::max(most, scene()->instruments[0].coupling_stiffness * (w.state().instruments[0].X_WT.p - t.X_WD.p).z());
+    }
+    return most;
+  };
+  EXPECT_GT(felt(0.0), 0.03);
+  EXPECT_LT(felt(5e-3), 0.001);
+}
+
 /// However fast a jaw comes at a vessel from the side, it lies where one that comes slowly has pushed it.
 TEST(VesselScene, FastJawsPushAVesselAside) {
   const auto aside = [](double speed) {  // [m/s]; [m]

@@ -1,0 +1,80 @@
+#include "world/surface_touch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace filum {
+namespace {
+
+constexpr double kOneTouch = 35e-6;  // [m], of a strand that one touch stands for, either way
+constexpr double kShallow = 50e-6;   // [m], half a wall: from deeper within a touch stays where it went in
+constexpr double kLightest = 5e-6;   // [N], half of what the wall's step leaves unbalanced
+constexpr double kAlong = 0.1e-3;    // [m], by which a place goes along in a step at most
+constexpr double kOnSurface = 1e-9;  // [m], distance that is none
+
+}  // namespace
+
+RodTether hold_touch(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x) noexcept {
+  RodTether t;
+  t.arc = touch.arc;
+  t.anchor = wall.position(w, touch.at) + law.radius * touch.normal;
+  t.stiffness = law.stiffness * touch.normal * touch.normal.transpose();
+  const double depth = (t.anchor - x).dot(touch.normal);
+  if (depth > kDeepest) t.anchor -= (depth - kDeepest) * touch.normal;
+  t.along = touch.normal.unitOrthogonal();
+  t.across = touch.normal.cross(t.along);
+  t.stick = law.stiffness;
+  t.limit = law.friction * touch.load;
+  return t;
+}
+
+TouchFooting find_footing(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const RodTether& t, const TouchLaw& law, const Vec3& x) noexcept {
+  TouchFooting f;
+  const double height = (x - wall.position(w, touch.at)).dot(touch.normal) - law.radius;
+  const Vec3 rub = t.force - t.force.dot(touch.normal) * touch.normal, q = x + rub / law.stiffness;  // the bristle stays bent by what friction bears: what sticks does not creep
+  f.near = wall.nearest(w, q, kAlong + law.radius);
+  f.normal = f.near.fraction > kOnSurface && law.radius > 0.0 && f.near.found ? Vec3((q - wall.position(w, f.near.point)).normalized()) : f.near.normal;
+  f.slides = f.near.found && f.normal.dot(touch.normal) > 0.3 && height > -kShallow;  // deep within, the far wall may be nearest
+  f.off = height >= 0.0 && !(f.slides && f.near.fraction < law.radius);
+  f.depth = f.slides ? law.radius - f.near.fraction : -height;
+  return f;
+}
+
+void lean_touch(VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const RodTether& t, const TouchLaw& law) noexcept {
+  if (touch.load < kLightest) {
+    wall.add_load(w, touch.at, -t.force);
+    return;
+  }
+  WallSlip push;
+  push.along = -touch.normal;
+  push.force = touch.load;
+  push.stick = law.stiffness;
+  push.high = 2.0 * touch.load;
+  wall.add_load(w, touch.at, Vec3::Zero(), Mat3::Zero(), push);
+  if (t.limit <= 0.0) return;
+  RodTether rub = t;
+  rub.stiffness.setZero();
+  rub.force -= t.force.dot(touch.normal) * touch.normal;
+  load_wall(wall, w, touch.at, rub, wall.options().dt);
+}
+
+void slide_touch(SurfaceTouch& touch, const TouchFooting& footing) noexcept {
+  if (!footing.slides) return;
+  touch.at = footing.near.point;
+  touch.normal = footing.normal;
+}
+
+WallCrossing meet_surface(const VesselWall& wall, const WallState& w, const Vec3& before, const Vec3& now) noexcept {
+  WallCrossing c = wall.crossing(w, before, now);
+  c.found = c.found && (now - before).dot(c.normal) < 0.0;
+  return c;
+}
+
+bool near_one_of(std::span<const SurfaceTouch> touches, double arc) noexcept {
+  return std::any_of(touches.begin(), touches.end(), [&](const SurfaceTouch& t) { return std::abs(t.arc - arc) < kOneTouch; });
+}
+bool near_one_of(std::span<const double> arcs, double arc) noexcept {
+  return std::any_of(arcs.begin(), arcs.end(), [&](double a) { return std::abs(a - arc) < kOneTouch; });
+}
+
+}  // namespace filum
