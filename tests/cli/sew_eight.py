@@ -243,9 +243,10 @@ def knot_choices(random_, k):
     """Before the ends of the last stitch are cut, the clamp may come nearer: it stays there when blood is let in."""
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name not in BITES}
     lasts = (.4, .18, .6) if k + 1 == STITCHES else (.18,)
-    yield from (dict(slide=slide, let_go=(0, -.3, -.45), first=first, firm=30, cut=1.3, last=last) for last in lasts for slide in SLIDES for first in (10, 9, 11))
+    yield from (dict(slide=slide, let_go=(0, -.3, -.45), first=first, firm=firm, cut=1.5, last=last) for last in lasts for slide in SLIDES
+                for first, firm in ((11, 30), (10, 45), (9, 45), (10, 30), (9, 30)))
     while True:
-        yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.7, 1.5) * SLIDES[0], 2), first=random_.choice([9, 10, 11]), firm=30, cut=1.3,
+        yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.7, 1.5) * SLIDES[0], 2), first=random_.choice([9, 10, 11]), firm=random_.choice([30, 45]), cut=1.5,
                    last=random_.choice(lasts))
 
 
