@@ -22,6 +22,7 @@ class VesselScene {
   VesselState start(const Vec3& point);
   void size_observation(Observation& o) const;
 
+  /// What the tissue holds needle and thread by in the coming step; `held`: a hand holds the needle.
   void hold(const VesselState& s, const Pose& X_WN, bool held, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
   /// The clamp's buttons: `next` (4) turns it over and back, or to the next of the scene's turns, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
   /// step then carries the stumps along. 8 and 16 take the upstream and the downstream clamp off; then it moves no more.

@@ -24,7 +24,7 @@ class WireContact {
 
   TouchLaw law;  // steel on wet tissue
 
-  /// Before the needle moves from X_WN: what the surface holds it by.
+  /// Before the needle moves from X_WN: what the surface holds it by; `held`: a hand holds it.
   void hold(const VesselWall& wall, const WallState& w, const TouchState& s, const TrackState& tracks, const Pose& X_WN, bool held,
             std::vector<RodTether>& on_needle) noexcept;
   /// After it has moved to X_WN: loads on the wall, and what it has come upon.
