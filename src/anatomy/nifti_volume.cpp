@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 
 namespace filum {
 namespace {
@@ -80,7 +81,7 @@ std::size_t bytes_in(const std::string& file, std::size_t wanted) {
 }  // namespace
 
 Volume read_nifti(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError(path, "file", "none", "a NIfTI file");
+  if (!is_file(path)) throw InputError(path, "file", "none", "a NIfTI file");
   nifti_set_debug_level(0);
   int swapped = 0;
   const std::unique_ptr<nifti_1_header, Free> header(nifti_read_header(path.c_str(), &swapped, 0));

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/numbers.h"
 #include "base/utc_stamp.h"
 #include "cli/options.h"
@@ -111,7 +112,7 @@ int run(const CalibrateOptions& o, const Streams& io) {
   if (o.port.empty() == o.points.empty()) throw InputError("calibrate", "--port", o.port, "either --port or --points");
   if (o.points.empty() && std::min(o.angles.size(), o.forces.size()) < 5)
     throw InputError("calibrate", "--angles, --forces", std::to_string(std::min(o.angles.size(), o.forces.size())) + " values", "at least 5");
-  if (std::filesystem::exists(o.out)) throw InputError("calibrate", "--out", o.out, "a file that does not exist yet");
+  if (is_there(o.out)) throw InputError("calibrate", "--out", o.out, "a file that does not exist yet");
   const CalibrationReadings readings = o.points.empty() ? readings_from_port(o, io) : load_readings(o.points);
   const CalibrationFit angle = fit_line(readings.angle, {}, "deg", kDegree);
   const CalibrationFit force = fit_line(readings.force, {}, "N", 1.0);

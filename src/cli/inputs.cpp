@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "cli/setup.h"
 #include "devices/haptic_link.h"
 #include "devices/igtl_tracker.h"
@@ -111,12 +112,12 @@ InputDevices open_inputs(const std::string& input, const std::string& root, cons
   result.scripted = true;
   if (input == "demo") {
     const std::string script = demonstration_file(root, task);
-    if (!std::filesystem::exists(script)) throw InputError("--input", "demo", task, "a task with a demonstration (" + script + " is not there)");
+    if (!is_there(script)) throw InputError("--input", "demo", task, "a task with a demonstration (" + script + " is not there)");
     add_demonstrator(result, script);
     result.description = "demonstrator";
     return result;
   }
-  if (!std::filesystem::is_regular_file(input)) {
+  if (!is_file(input)) {
     throw InputError("--input", "input", input, "demo, serial:PATH, haptic:PORT, igtl:PORT, a demonstration (*.yaml) or a recording");
   }
   const bool script = std::filesystem::path(input).extension() == ".yaml";

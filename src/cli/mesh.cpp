@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "cli/options.h"
+#include "base/file_kind.h"
 
 namespace filum {
 
@@ -22,7 +23,7 @@ void add_mesh(CLI::App& app, Action& action) {
     *words = command->remaining();
     action.run = [words](const Streams& io) {
       const std::string program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "filum_mesh";
-      if (!std::filesystem::exists(program)) {
+      if (!is_there(program)) {
         std::fprintf(io.err, "filum: mesh is not built: install libcgal-dev and libnifti-dev, then run ./filum test\n");
         return static_cast<int>(kFailed);
       }

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "cli/options.h"
 #include "ranks/ranks.h"
 #include "reconcile/plugin.h"
@@ -97,7 +98,7 @@ std::unique_ptr<Ranks> start_ranks(const Streams& io) {
 std::string unfinished(const ReconcileOptions& o) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(o.all))
-    if (fs::is_regular_file(entry.path() / "experiment.yaml")) names.push_back(entry.path().filename().string());
+    if (is_file(entry.path() / "experiment.yaml")) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   std::string list;
   for (const std::string& name : names)
@@ -115,7 +116,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 /// Every dataset below a folder, each on one thread; those that have a report already are left alone. Under MPI the processes take them
 /// from one list as they get free; with the environment's numbers alone every process takes each n-th of all.
 int run_all(const ReconcileOptions& o, const Streams& io) {
-  if (!fs::is_directory(o.all)) throw InputError("--all", "folder", o.all, "a folder of datasets");
+  if (!is_folder(o.all)) throw InputError("--all", "folder", o.all, "a folder of datasets");
   const std::unique_ptr<Ranks> ranks = start_ranks(io);
   const auto [rank, size] = rank_and_size();
   ReconcileOptions every = o;

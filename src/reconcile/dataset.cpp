@@ -9,6 +9,7 @@
 
 #include "base/ensure.h"
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/hash.h"
 #include "base/units.h"
 #include "base/utf8.h"
@@ -147,9 +148,9 @@ void read_model(const YamlNode& file, Dataset& d, const std::string& root) {
     }
   }
   fs::path path = fs::path(d.folder) / d.model;
-  if (!fs::is_regular_file(path)) path = fs::path(root) / "models" / (d.model + ".yaml");
-  if (!fs::is_regular_file(path)) path = fs::path(root) / "models" / d.model;
-  if (!fs::is_regular_file(path)) model.refuse("file", "a model below " + (fs::path(root) / "models").string() + ", e.g. " + info(d.rig).model + " (there is no such file), or a path beside experiment.yaml");
+  if (!is_file(path)) path = fs::path(root) / "models" / (d.model + ".yaml");
+  if (!is_file(path)) path = fs::path(root) / "models" / d.model;
+  if (!is_file(path)) model.refuse("file", "a model below " + (fs::path(root) / "models").string() + ", e.g. " + info(d.rig).model + " (there is no such file), or a path beside experiment.yaml");
   const YamlNode values = YamlNode::load(path.string());
   for (const ParameterInfo& p : info(d.rig).baseline) {
     if (!values.has(p.name)) continue;
@@ -196,7 +197,7 @@ bool is_video(const fs::path& file) {
 CsvTable read_video_samples(Dataset& d, Trial& t, const VideoSetup& setup) {
   const VideoChannels video = follow_video(setup, d.rig, t.word("mode"));
   const fs::path beside = fs::path(setup.file).replace_extension(".csv");
-  const bool with_table = fs::is_regular_file(beside);
+  const bool with_table = is_file(beside);
   CsvTable table;
   table.file = with_table ? beside.string() : setup.file;
   if (with_table) table = CsvTable::load(beside.string());
@@ -287,7 +288,7 @@ void read_trial(const YamlNode& file, const YamlNode& node, Dataset& d, const Tr
   if (!node.has("video") && video) node.refuse("video", "a map with scale (length of a pixel) and points (name, x, y in the first frame) for a video");
   for (const Trial& other : d.trials)
     if (other.file == t.file) node.refuse("file", "each file once");
-  if (!fs::exists(fs::path(d.folder) / path)) node.refuse("file", "a file in the dataset's folder (no such file: " + (fs::path(d.folder) / path).string() + ")");
+  if (!is_there(fs::path(d.folder) / path)) node.refuse("file", "a file in the dataset's folder (no such file: " + (fs::path(d.folder) / path).string() + ")");
   t.repeat = node.text_or("repeat", "");
   t.hold_out = node.flag_or("hold_out", false);
   if (node.has("specimen")) read_specimen(node.map("specimen"), d, t.specimen, t.shape);
@@ -372,7 +373,7 @@ Dataset load_dataset(const std::string& folder, const std::string& root) {
   fs::path path = fs::path(folder).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
   d.name = with_utf8_only(fs::absolute(path).filename().string());
-  if (!fs::is_directory(folder)) throw InputError(folder, "dataset", "no such folder", "a folder with experiment.yaml");
+  if (!is_folder(folder)) throw InputError(folder, "dataset", "no such folder", "a folder with experiment.yaml");
   const YamlNode file = YamlNode::load(folder + "/experiment.yaml");
   std::ostringstream text;
   text << std::ifstream(folder + "/experiment.yaml", std::ios::binary).rdbuf();

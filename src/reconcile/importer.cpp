@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "reconcile/csv_table.h"
 #include "reconcile/whole_file.h"
 
@@ -173,7 +174,7 @@ std::vector<std::string> beams(const std::string& folder, const std::string& out
 std::vector<std::string> import_kinds() { return {"brain-budday2017", "muscle-vanloocke", "loadcells-fareke"}; }
 
 std::vector<std::string> import_data(const std::string& kind, const std::string& folder, const std::string& out) {
-  if (!fs::is_directory(folder)) throw InputError(folder, "folder", "no such folder", "the folder of the published tables");
+  if (!is_folder(folder)) throw InputError(folder, "folder", "no such folder", "the folder of the published tables");
   if (kind == "brain-budday2017") return brain(folder, out);
   if (kind == "muscle-vanloocke") return muscle(folder, out);
   if (kind == "loadcells-fareke") {

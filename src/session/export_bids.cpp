@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/numbers.h"
 #include "session/export.h"
 
@@ -262,7 +263,7 @@ std::vector<std::string> export_bids(const RecordingReader& recording, const std
   const Names names(meta, folder);
   std::error_code error;
   fs::create_directories(names.motion, error);
-  if (!fs::is_directory(names.motion)) throw InputError(folder, "export", error.message(), "a folder that can be made");
+  if (!is_folder(names.motion)) throw InputError(folder, "export", error.message(), "a folder that can be made");
   std::vector<std::string> written;
   write_dataset(names, meta, written);
   for (int tool = 0; tool < 3; ++tool) write_hand(recording, names, tool, written);

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "session/export.h"
 
 namespace filum {
@@ -81,7 +82,7 @@ class TextFile {
 void make_folder(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder))
+  if (!is_folder(folder))
     throw InputError(folder, "export", error.message(), "a folder that can be made");
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "session/database.h"
 #include "session/recorder.h"
 #include "session/recording_reader.h"
@@ -217,7 +218,7 @@ Store::Store(const std::string& folder, const std::string& index_connection)
   impl_->own_index = index_connection.empty();
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw StoreError(StoreTrouble::kNoFolder, folder, "store", error ? error.message() : "a file", "a folder");
+  if (!is_folder(folder)) throw StoreError(StoreTrouble::kNoFolder, folder, "store", error ? error.message() : "a file", "a folder");
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     throw StoreError(StoreTrouble::kNotWritable, folder, "store", "a folder that cannot be written",
                      "a folder that can be written");

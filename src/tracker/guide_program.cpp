@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/utc_stamp.h"
 #include "tracker/camera_guide.h"
 #include "tracker/picture_source.h"
@@ -171,7 +172,7 @@ class GuideProgram {
 int run_guide(const GuideOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
-  if (!std::filesystem::is_directory(options.folder)) throw InputError("--folder", "folder", options.folder, "a folder that can be made");
+  if (!is_folder(options.folder)) throw InputError("--folder", "folder", options.folder, "a folder that can be made");
   return GuideProgram(options).run();
 }
 

@@ -4,11 +4,12 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 
 namespace filum {
 
 PoseLog::PoseLog(const std::string& path) {
-  if (std::filesystem::exists(path)) throw InputError("--log", "file", path, "a file that does not exist yet");
+  if (is_there(path)) throw InputError("--log", "file", path, "a file that does not exist yet");
   file_.open(path);
   file_ << "time_s,tool,marker,x_m,y_m,z_m,qw,qx,qy,qz,residual_px";
   for (int i = 0; i < 6; ++i)

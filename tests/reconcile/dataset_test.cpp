@@ -119,6 +119,8 @@ TEST(Dataset, RefusesWithFileLineColumnAndExpectation) {
       {"picture", with(block_yaml(kOne), "a.csv", "a.png"), good, "a .csv file or a video"},
       {"path outside", with(block_yaml(kOne), "a.csv", "../a.csv"), good, "inside the dataset's folder"},
       {"model unknown", with(block_yaml(kOne), "brain/linear", "brain/none"), good, "model.file"},
+      {"no name of a file", with(block_yaml(kOne), "brain/linear", "brain/" + std::string(300, 'a')), good, "model.file"},
+      {"no name of a table", with(block_yaml(kOne), "a.csv", std::string(300, 'a') + ".csv"), good, "trials[0].file"},
       {"all held out", with(block_yaml(kOne), " } }\n", " }, hold_out: true }\n"), good, "at least one trial that is not held out"}};
   for (const BadCase& c : cases) {
     Folder f;
