@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "cli/options.h"
 #include "base/file_kind.h"
+#include "cli/options.h"
 
 namespace filum {
 

@@ -13,6 +13,7 @@
 // Sheet and jaws: k o^2/2 for the overlap o of points of the wire; on the sheet with Coulomb friction.
 // Neglects: gyroscopic moments, bending of the wire. Tests: needle_test.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -44,6 +45,9 @@ struct NeedleState {
   Vec3 v = Vec3::Zero(), w = Vec3::Zero();  // [m/s], [rad/s], frame W
   Vec3 pull = Vec3::Zero();                 // [N], of the thread on the swage in the last step
   std::array<NeedleGrip, kNeedleTools> grips;
+  bool in_hand() const noexcept {
+    return std::any_of(grips.begin(), grips.end(), [](const NeedleGrip& g) { return g.held != 0; });
+  }
   Eigen::Matrix<double, 3, kNeedleSamples> sheet_bristle = Eigen::Matrix<double, 3, kNeedleSamples>::Zero();  // [m]
 };
 

@@ -98,8 +98,7 @@ bool FreshSuture::in_the_way(const State& s) const noexcept {
 const char* FreshSuture::refusal(const State& s) const noexcept {
   if (s.sutures.taken >= model_.sutures) return "suture-none-left";
   const RodPiece strand = piece_to(s.thread, s.thread.n - 1);
-  const auto grips = [](const NeedleGrip& g) { return g.held != 0; };
-  if (std::any_of(s.needle.grips.begin(), s.needle.grips.end(), grips) || held(s, strand)) return "suture-held";
+  if (s.needle.in_hand() || held(s, strand)) return "suture-held";
   if (s.tissue.tracks.open >= 0 || in_tissue(s, strand, true)) return "suture-in-tissue";
   if (in_the_way(s)) return "suture-in-the-way";
   int kept = 0;

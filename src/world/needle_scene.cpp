@@ -119,8 +119,8 @@ void NeedleScene::before_thread(const State& s, ImplicitRod& rod) noexcept {
   on_thread.clear();
   RodTether& swage = on_thread.emplace_back();
   swage.at_end = true;
-  if (tissue_) tissue_->hold(s.tissue, s.needle.X_WN, in_hand(s), s.thread, body_.tethers, on_thread);
-  hold_swage(s, rod, in_hand(s) ? s.needle.pull : Vec3::Zero());  // loose, it would fly off
+  if (tissue_) tissue_->hold(s.tissue, s.needle.X_WN, s.needle.in_hand(), s.thread, body_.tethers, on_thread);
+  hold_swage(s, rod, s.needle.in_hand() ? s.needle.pull : Vec3::Zero());  // loose, it would fly off
 }
 
 /// Where the thread's end is held, and how firmly, by a needle that `load` [N] pulls at.
@@ -183,7 +183,7 @@ void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexc
   thread_pull_ = rod.tethers.list.front().force.norm();
   if (!summary_.sound || summary_.residual > kTroubleForce) say(o, "solver-trouble", -1, summary_.residual, "N");
   if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments, o);
-  if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, in_hand(s), s.thread, body_.tethers, rod.tethers.list, o);
+  if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.needle.in_hand(), s.thread, body_.tethers, rod.tethers.list, o);
   if (tissue_) tissue_->feel(s.tissue, model_.instruments, s.instruments, s.force, s.torque);
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {
     s.force[i] += body_.tools[i].force;

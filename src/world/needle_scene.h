@@ -5,7 +5,6 @@
 // the thread is stepped with its end held just so (rod_tether.h); then the needle follows the thread's end. Where the needle cannot follow, because
 // what was seen ahead held for another pull only (a wire that turns between the pads gives way without end), the step is taken back and made again.
 
-#include <algorithm>
 #include <memory>
 
 #include "physics/implicit_rod.h"
@@ -43,9 +42,6 @@ class NeedleScene {
   void after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept;
   void observe(const State& s, Observation& o) const noexcept;
   static bool held_by(const State& s, int tool) noexcept { return s.needle.grips[static_cast<std::size_t>(tool)].held != 0; }
-  static bool in_hand(const State& s) noexcept {
-    return std::any_of(s.needle.grips.begin(), s.needle.grips.end(), [](const NeedleGrip& g) { return g.held != 0; });
-  }
 
  private:
   double stop_angle(const InstrumentParameters& tool) const noexcept;

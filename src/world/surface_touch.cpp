@@ -6,7 +6,6 @@
 namespace filum {
 namespace {
 
-constexpr double kOneTouch = 35e-6;  // [m], of a strand that one touch stands for, either way
 constexpr double kShallow = 50e-6;   // [m], half a wall: from deeper within a touch stays where it went in
 constexpr double kLightest = 5e-6;   // [N], half of what the wall's step leaves unbalanced
 constexpr double kAlong = 0.1e-3;    // [m], by which a place goes along in a step at most
@@ -68,13 +67,6 @@ WallCrossing meet_surface(const VesselWall& wall, const WallState& w, const Vec3
   WallCrossing c = wall.crossing(w, before, now);
   c.found = c.found && (now - before).dot(c.normal) < 0.0;
   return c;
-}
-
-bool near_one_of(std::span<const SurfaceTouch> touches, double arc) noexcept {
-  return std::any_of(touches.begin(), touches.end(), [&](const SurfaceTouch& t) { return std::abs(t.arc - arc) < kOneTouch; });
-}
-bool near_one_of(std::span<const double> arcs, double arc) noexcept {
-  return std::any_of(arcs.begin(), arcs.end(), [&](double a) { return std::abs(a - arc) < kOneTouch; });
 }
 
 }  // namespace filum

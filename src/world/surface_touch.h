@@ -6,8 +6,6 @@
 // surface, f the friction borne by bristles of stiffness k (return mapping), so that what sticks does not creep. A touch ends when the strand is above its place.
 // Tests: vessel_contact_test, wire_contact_test.
 
-#include <span>
-
 #include "physics/needle_track.h"
 #include "world/vessel_state.h"
 
@@ -37,9 +35,6 @@ void lean_touch(VesselWall& wall, const WallState& w, const SurfaceTouch& touch,
 void slide_touch(SurfaceTouch& touch, const TouchFooting& footing) noexcept;
 /// Where a sample that goes from `before` to `now` [m] comes upon the surface from outside; not found: nowhere.
 WallCrossing meet_surface(const VesselWall& wall, const WallState& w, const Vec3& before, const Vec3& now) noexcept;
-/// Is there a touch that stands for this place of the strand already?
-bool near_one_of(std::span<const SurfaceTouch> touches, double arc) noexcept;
-bool near_one_of(std::span<const double> arcs, double arc) noexcept;
 
 inline constexpr double kDeepest = 30e-6;      // [m], overlap that counts: what has gone deeper comes back as gently
 inline constexpr double kTrackReach = 0.3e-3;  // [m], of a strand on either side of a track that is left alone

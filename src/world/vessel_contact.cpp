@@ -8,6 +8,7 @@ namespace filum {
 namespace {
 
 constexpr double kSpacing = 0.1e-3;     // [m], of samples along the thread at most: less than a wall is thick
+constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands for, either way
 constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
@@ -50,6 +51,13 @@ class InTracks {
   std::array<double, kMaxTracks> from_, to_;
   std::size_t n_ = 0;
 };
+
+bool near_one_of(std::span<const SurfaceTouch> touches, double arc) noexcept {
+  return std::any_of(touches.begin(), touches.end(), [&](const SurfaceTouch& t) { return std::abs(t.arc - arc) < kOneTouch; });
+}
+bool near_one_of(std::span<const double> arcs, double arc) noexcept {
+  return std::any_of(arcs.begin(), arcs.end(), [&](double a) { return std::abs(a - arc) < kOneTouch; });
+}
 
 }  // namespace
 

@@ -57,7 +57,7 @@ std::uint64_t hash_blood(const BloodState& b, std::uint64_t h) noexcept {
 }  // namespace
 
 VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity)
-    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), wire_(needle) {
+    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), wire_(needle, model.wire_touches) {
   if (model.lumen) blood_ = std::make_unique<BloodFlow>(model_);
 }
 
@@ -99,7 +99,7 @@ void VesselScene::hold(const VesselState& s, const Pose& X_WN, bool held, const 
   wall_.clear_loads();
   tracks_.hold(wall_, s.wall, s.tracks, X_WN, &thread, on_needle, on_thread);
   contact_.hold(wall_, s.wall, s.touches, thread, on_thread);
-  if (model_.wire_touches) wire_.hold(wall_, s.wall, s.wire, s.tracks, X_WN, held, on_needle);
+  wire_.hold(wall_, s.wall, s.wire, s.tracks, X_WN, held, on_needle);
 }
 
 void VesselScene::handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept {
@@ -194,7 +194,7 @@ void VesselScene::step(VesselState& s, const Pose& X_WN, bool held, const RodSta
   const int n = tracks_.follow(wall_, s.wall, s.tracks, X_WN, &thread, model_.wall.dt, on_needle, on_thread, events.data(), static_cast<int>(events.size()));
   for (int k = 0; k < n; ++k) say(o, events[static_cast<std::size_t>(k)].name, -1, events[static_cast<std::size_t>(k)].value, "N");
   contact_.follow(wall_, s.wall, s.touches, s.tracks, thread, on_thread);
-  if (model_.wire_touches) wire_.follow(wall_, s.wall, s.wire, s.tracks, X_WN, held, on_needle);
+  wire_.follow(wall_, s.wall, s.wire, s.tracks, X_WN, held, on_needle);
   for (int part = 0; part < std::min(2, wall_.n_parts()); ++part) wall_.set_pressure(part, s.pressure[static_cast<std::size_t>(part)]);
   move_clamp(s);
   wall_.meet(s.wall);
@@ -203,9 +203,9 @@ void VesselScene::step(VesselState& s, const Pose& X_WN, bool held, const RodSta
   if (!summary.sound) say(o, "solver-trouble", -1, summary.residual, "N");
   wall_.refit(s.wall);
   tracks_.carry_point(wall_, s.wall, s.tracks);
-  if (model_.wire_touches) wire_.feel(wall_, s.wire);
+  wire_.feel(wall_, s.wire);
   contact_.overtake(wall_, s.wall, s.touches, s.tracks, thread);
-  if (model_.wire_touches) wire_.overtake(wall_, s.wall, s.wire, s.tracks, X_WN);
+  wire_.overtake(wall_, s.wall, s.wire, s.tracks, X_WN);
 }
 
 void VesselScene::observe(const VesselState& s, const RodState& thread, Observation& o) const noexcept {

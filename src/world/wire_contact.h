@@ -20,7 +20,8 @@ inline constexpr int kMostWireSamples = 96;
 
 class WireContact {
  public:
-  explicit WireContact(const NeedleShape& needle);
+  /// `touches`: false for a wire that goes through walls.
+  WireContact(const NeedleShape& needle, bool touches);
 
   TouchLaw law;  // steel on wet tissue
 
