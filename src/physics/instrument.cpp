@@ -6,6 +6,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "physics/instrument_contact.h"
+
 namespace filum {
 namespace {
 
@@ -14,6 +16,10 @@ constexpr double kJawMass = 5e-4;       // [kg]
 constexpr double kJawInertia = 1e-8;    // [kg m2]
 constexpr double kJawTime = 0.01;       // [s], the servo's time to reach the commanded angle
 constexpr double kJawTorque = 0.05;     // [N m], of the fingers
+constexpr double kFriction = 0.2;       // [-], of steel on steel and on what stands still, wet [P]
+constexpr double kYield = 3e-4;         // [m/(N s)], what contacts give way by: those that say the same share the load
+constexpr unsigned kWorkingMemory = 4u << 20;  // [B], of ODE's step
+constexpr double kParting = 0.1;        // [m/s], at most, of what has come into each other
 
 void start_ode() {
   static std::once_flag once;
@@ -51,11 +57,14 @@ struct Instruments::Ode {
     dJointID hinge[2];
   };
   dWorldID world;
+  dJointGroupID touches;
   std::vector<Tool> tools;
 
   explicit Ode(const std::vector<InstrumentParameters>& parameters) {
     start_ode();
     world = dWorldCreate();
+    dWorldSetContactMaxCorrectingVel(world, kParting);
+    touches = dJointGroupCreate(0);
     for (const InstrumentParameters& p : parameters) {
       Tool t;
       t.handle = make_body(world, p.mass, p.inertia);
@@ -70,8 +79,21 @@ struct Instruments::Ode {
       }
       tools.push_back(t);
     }
+    take_memory();
   }
-  ~Ode() { dWorldDestroy(world); }
+  /// As much as a step may need with all its touches: none is taken later.
+  void take_memory() {
+    const dWorldStepReserveInfo reserve = {sizeof(dWorldStepReserveInfo), 1.2f, kWorkingMemory};
+    dWorldSetStepMemoryReservationPolicy(world, &reserve);
+    const dContact none{};
+    for (int k = 0; k < InstrumentContact::kMost; ++k) dJointCreateContact(world, touches, &none);
+    dJointGroupEmpty(touches);
+    dWorldStep(world, kLongestStep);
+  }
+  ~Ode() {
+    dJointGroupDestroy(touches);
+    dWorldDestroy(world);
+  }
 
   static double side(int k) noexcept { return k == 0 ? -1.0 : 1.0; }  // jaw 0 turns towards +x: about -y
 
@@ -90,6 +112,27 @@ struct Instruments::Ode {
       const Vec3 hinge = s.X_WT * Vec3(0, 0, p.jaw_length);
       place(tools[i].jaw[k], jaw, s.v + s.w.cross(hinge - s.X_WT.p) + spin.cross(jaw.p - hinge), spin);
     }
+  }
+
+  dBodyID body(int tool, int bar) const noexcept {
+    if (tool < 0) return nullptr;
+    const Tool& t = tools[static_cast<std::size_t>(tool)];
+    return bar < 2 ? t.jaw[bar] : t.handle;
+  }
+
+  /// For this step: the surfaces do not come into each other, or part when they have.
+  void touch(const InstrumentTouch& t, double h) noexcept {
+    dContact c{};
+    c.surface.mode = dContactApprox1 | dContactMotionN | dContactSoftCFM;
+    c.surface.soft_cfm = kYield;
+    c.surface.mu = kFriction;
+    c.surface.motionN = -std::max(0.0, t.gap) / h;
+    c.geom.depth = std::max(0.0, -t.gap);
+    for (int k = 0; k < 3; ++k) {
+      c.geom.pos[k] = t.p[k];
+      c.geom.normal[k] = t.normal[k];
+    }
+    dJointAttach(dJointCreateContact(world, touches, &c), body(t.tool, t.bar), body(t.other, t.other_bar));
   }
 
   void read(std::size_t i, const InstrumentParameters& p, InstrumentState& s) noexcept {
@@ -127,6 +170,9 @@ struct Instruments::Ode {
 
 Instruments::Instruments(std::vector<InstrumentParameters> parameters)
     : parameters_(std::move(parameters)), ode_(std::make_unique<Ode>(parameters_)) {}
+Instruments::Instruments(std::vector<InstrumentParameters> parameters, Surroundings surroundings) : Instruments(std::move(parameters)) {
+  contact_ = std::make_unique<InstrumentContact>(static_cast<int>(parameters_.size()), std::move(surroundings));
+}
 Instruments::~Instruments() = default;
 Instruments::Instruments(Instruments&&) noexcept = default;
 
@@ -146,7 +192,12 @@ void Instruments::step(std::vector<InstrumentState>& states, const std::vector<I
       ode_->write(i, parameters_[i], states[i]);
       ode_->drive(i, parameters_[i], states[i], c, v_D, w_D, force[i], torque[i], h);
     }
+    if (contact_) {
+      contact_->find(parameters_, states, h);
+      for (const InstrumentTouch& t : contact_->touches()) ode_->touch(t, h);
+    }
     dWorldStep(ode_->world, h);
+    dJointGroupEmpty(ode_->touches);
     for (std::size_t i = 0; i < states.size(); ++i) ode_->read(i, parameters_[i], states[i]);
   }
   for (std::size_t i = 0; i < states.size(); ++i) {

@@ -10,6 +10,7 @@
 //   f = (k (p_D - p - h v') + c (v_D - v')) / (1 + h c/m + h^2 k/m), likewise for rotation. At rest k (p_D - p) = -F.
 // Grip: N is the measured force where the device has one, else the squeeze of the command beyond closure,
 //   N = k_grip (theta - theta_command) / jaw_length, 0 <= N <= N_max.
+// They touch each other and what stands in the scene (physics/instrument_contact.h), and rub on it (friction [P]).
 // Neglects: bending of the jaws, play in the hinge, weight (the hand carries it). Test: instrument_test.
 
 #include <memory>
@@ -60,9 +61,13 @@ struct InstrumentCommand {
   bool follow = true;         // false: keep the last device pose and grip
 };
 
+struct Surroundings;  // physics/instrument_contact.h
+class InstrumentContact;
+
 class Instruments {
  public:
-  explicit Instruments(std::vector<InstrumentParameters> parameters);
+  explicit Instruments(std::vector<InstrumentParameters> parameters);  // that pass through each other and all else
+  Instruments(std::vector<InstrumentParameters> parameters, Surroundings surroundings);
   ~Instruments();
   Instruments(Instruments&&) noexcept;
 
@@ -76,6 +81,7 @@ class Instruments {
  private:
   struct Ode;
   std::vector<InstrumentParameters> parameters_;
+  std::unique_ptr<InstrumentContact> contact_;
   std::unique_ptr<Ode> ode_;
 };
 

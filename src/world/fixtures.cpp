@@ -4,28 +4,42 @@
 
 namespace filum {
 
+namespace {
+
+RoundBar bar_of(const PostShape& bar) {
+  return {bar.p_W - bar.half_length * bar.axis_W, bar.p_W + bar.half_length * bar.axis_W, bar.radius, bar.radius};
+}
+
+}  // namespace
+
+Surroundings surroundings(const Model& model) {
+  Surroundings s;
+  if (model.description.has_post) s.bars = {bar_of(model.description.post), bar_of(model.description.base)};
+  s.sheet = model.description.floor_height;
+  return s;
+}
+
 void add_fixtures(const Model& model, RodObstacles& obstacles) {
   const int body = static_cast<int>(obstacles.bodies.size());
+  const Surroundings fixed = surroundings(model);
   obstacles.bodies.emplace_back();
-  auto add_bar = [&](const PostShape& bar) {
+  const auto add = [&](const RoundBar& bar) {
     Obstacle o;
     o.body = body;
-    o.a_B = bar.p_W - bar.half_length * bar.axis_W;
-    o.b_B = bar.p_W + bar.half_length * bar.axis_W;
-    o.r_a = o.r_b = bar.radius;
+    o.a_B = bar.a;
+    o.b_B = bar.b;
+    o.r_a = bar.r_a;
+    o.r_b = bar.r_b;
     o.friction = model.post_friction;
     obstacles.obstacles.push_back(o);
   };
-  if (model.description.has_post) {
-    add_bar(model.description.post);
-    add_bar(model.description.base);
-  }
-  for (const PostShape& lip : model.lips) add_bar(lip);
-  for (const PostShape& bar : model.description.notch) add_bar(bar);
+  for (const RoundBar& bar : fixed.bars) add(bar);
+  for (const PostShape& lip : model.lips) add(bar_of(lip));
+  for (const PostShape& bar : model.description.notch) add(bar_of(bar));
   Obstacle sheet;
   sheet.kind = Obstacle::Kind::plane;
   sheet.body = body;
-  sheet.a_B = Vec3(0, 0, model.description.floor_height);
+  sheet.a_B = Vec3(0, 0, fixed.sheet);
   sheet.b_B = sheet.a_B + Vec3::UnitZ();
   sheet.friction = model.post_friction;
   sheet.bears_end = model.needle == nullptr;  // else the needle around it meets the sheet

@@ -30,6 +30,7 @@ struct Model {
   RodStepOptions step;
   std::vector<InstrumentParameters> instruments;
   std::vector<Pose> instrument_start;
+  bool instruments_touch = true;   // each other, post and sheet; false: scenes whose demonstrations were made before they did
   std::vector<PelletParameters> pellets;  // small objects to be picked up; most scenes have none
   std::shared_ptr<const BrainModel> brain;  // instead of the thread, in scenes of brain retraction
   int sutures = 1;                 // with a needle: so many may be used, one after the other (world/fresh_suture.h)

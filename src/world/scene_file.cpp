@@ -192,6 +192,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
   m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));
   read_instruments(root, scene, *m);
+  m->instruments_touch = scene.flag_or("instruments_touch", true);
   d.dt = m->step.dt = scene.quantity("step", "ms", {1e-4, 5e-3});
   if (scene.has("tissue") && !m->needle) scene.refuse("needle", "a needle beside the tissue");
   if (scene.has("tissue")) read_tissue(root, scene.map("tissue"), vessel_file, *m);

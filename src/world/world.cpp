@@ -75,7 +75,7 @@ struct World::Impl {
 World::Impl::Impl(std::shared_ptr<const Model> m)
     : model(std::move(m)),
       rod(model->thread, model->contact, model->description.capacity, model->description.n_tools),
-      instruments(model->instruments),
+      instruments(model->instruments_touch ? Instruments(model->instruments, surroundings(*model)) : Instruments(model->instruments)),
       pellets(model->pellets, model->description.floor_height) {
   if (model->brain) {
     start_brain();
