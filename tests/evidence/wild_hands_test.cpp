@@ -53,7 +53,7 @@ TEST(WildHands, EveryOtherTask) {
 /// The thread's edges are numbered anew as they are halved and joined; the gap that is told is that of the edges the contacts knew.
 TEST(WildHands, StrandsAreNotSaidToBeNearerThanAnyTwoEdgesAre) {
   World world(load_model(FILUM_SOURCE_DIR, "knot-throw"));
-  WildHands hands(3, world.description());
+  WildHands hands(6, world.description());
   int renumbered = 0;
   for (int k = 0; k < 80; ++k) {
     const int before = world.state().thread.n;

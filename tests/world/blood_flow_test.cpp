@@ -98,13 +98,13 @@ TEST(BloodFlow, ForcepsOpenAClamp) {
   EXPECT_FALSE(w.observation().tissue.blood.off[1]);
 }
 
-/// Two forceps held upright over the second stump, jaws on either side of it.
+/// Two forceps over the second stump, jaws on either side of it, each leaning away from the other.
 class TwoForceps {
  public:
   explicit TwoForceps(World& w) : world_(w) {
     for (std::size_t i = 0; i < 2; ++i) {
       in.tools[i].valid = true;
-      in.tools[i].X_WD = {Vec3(0, 1.0e-3 + 0.3e-3 * static_cast<double>(i), 4e-3), Quat::Identity()};
+      in.tools[i].X_WD = {Vec3(0, 1.0e-3 + 0.3e-3 * static_cast<double>(i), 4e-3), Quat(Eigen::AngleAxisd(i == 0 ? 0.4 : -0.4, Vec3::UnitX()))};
       in.tools[i].grip_angle = 0.3;
     }
     steps(w, in, 0.2);
