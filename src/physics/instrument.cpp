@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "physics/instrument_contact.h"
+#include "physics/ode_trouble.h"
 
 namespace filum {
 namespace {
@@ -23,7 +24,10 @@ constexpr double kParting = 0.1;        // [m/s], at most, of what has come into
 
 void start_ode() {
   static std::once_flag once;
-  std::call_once(once, [] { dInitODE2(0); });
+  std::call_once(once, [] {
+    dInitODE2(0);
+    listen_to_ode();
+  });
 }
 
 void place(dBodyID body, const Pose& X, const Vec3& v, const Vec3& w) noexcept {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/stage_clock.h"
+#include "physics/ode_trouble.h"
 #include "world/brain_scene.h"
 #include "world/fixtures.h"
 #include "world/fresh_suture.h"
@@ -175,7 +176,9 @@ void World::Impl::move_instruments() noexcept {
   for (std::size_t i = 0; i < commands.size(); ++i) rod.obstacles.bodies[i].X_start = state.instruments[i].X_WT;
   if (!pellets.empty()) pellets.limit_jaws(model->instruments, state.instruments, state.pellets, commands);
   if (needle) needle->limit_jaws(state, commands);
+  const long troubles = ode_troubles();
   instruments.step(state.instruments, commands, state.force, state.torque, model->step.dt);
+  if (ode_troubles() != troubles) event("solver-trouble", -1, 0.0, "N");
   if (needle) needle->hold_back(state, rod.obstacles.bodies);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     ObstacleBody& body = rod.obstacles.bodies[i];

@@ -1,4 +1,4 @@
-foreach(name elastic_rod friction implicit_rod instrument instrument_contact linear_fem linear_fem_solver rod_contact rod_obstacle rod_pieces rod_resolution step_control spatula spatula_contact thread_grasp)
+foreach(name elastic_rod friction implicit_rod instrument instrument_contact linear_fem linear_fem_solver ode_trouble rod_contact rod_obstacle rod_pieces rod_resolution step_control spatula spatula_contact thread_grasp)
   filum_test(physics/${name})
 endforeach()
 filum_test(physics/pellet)

@@ -37,6 +37,29 @@ void run(World& w, int from, int to) {
   for (int k = from; k < to; ++k) w.step(hand(k));
 }
 
+TEST(World, InstrumentsStopAtTheSheetAndAtThePostUnlessTheSceneLeavesThatOut) {
+  for (const bool touch : {true, false}) {
+    auto m = std::make_shared<Model>(*scene());
+    m->instruments_touch = touch;
+    World w(m);
+    Inputs in = hand(0);
+    const auto lead = [&](const Vec3& to) {
+      const Vec3 from = in.tools[0].X_WD.p;
+      for (int k = 1; k <= 200; ++k) {
+        in.tools[0].X_WD.p = from + k / 200.0 * (to - from);
+        w.step(in);
+      }
+      for (int k = 0; k < 100; ++k) w.step(in);
+      return w.state().instruments[0].X_WT.p.z();
+    };
+    EXPECT_EQ(lead(Vec3(-25e-3, 20e-3, -6e-3)) > m->description.floor_height - 10e-6, touch);
+    lead(Vec3(-25e-3, 20e-3, 5e-3));
+    in.tools[0].X_WD.q = Quat(Eigen::AngleAxisd(M_PI_2, Vec3::UnitY()));  // the handle along +x
+    lead(Vec3(-4e-3, 4e-3, 5e-3));
+    EXPECT_EQ(lead(Vec3(-4e-3, 4e-3, 0.0)) > 0.5e-3, touch) << "the jaws lie on the post";
+  }
+}
+
 TEST(World, HandTakesTheThread) {
   World w(scene());
   bool grasped = false;
