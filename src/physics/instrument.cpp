@@ -180,6 +180,10 @@ Instruments::Instruments(std::vector<InstrumentParameters> parameters, Surroundi
 Instruments::~Instruments() = default;
 Instruments::Instruments(Instruments&&) noexcept = default;
 
+void Instruments::surround(const std::vector<RoundBar>& bars) noexcept {
+  if (contact_) contact_->surround(bars);
+}
+
 void Instruments::step(std::vector<InstrumentState>& states, const std::vector<InstrumentCommand>& commands,
                        const std::vector<Vec3>& force, const std::vector<Vec3>& torque, double dt) noexcept {
   const int n = std::max(1, static_cast<int>(std::ceil(dt / kLongestStep - 1e-9)));

@@ -61,7 +61,8 @@ struct InstrumentCommand {
   bool follow = true;         // false: keep the last device pose and grip
 };
 
-struct Surroundings;  // physics/instrument_contact.h
+struct RoundBar;      // physics/instrument_contact.h
+struct Surroundings;
 class InstrumentContact;
 
 class Instruments {
@@ -72,6 +73,9 @@ class Instruments {
   Instruments(Instruments&&) noexcept;
 
   const std::vector<InstrumentParameters>& parameters() const noexcept { return parameters_; }
+
+  /// The bars that stand in the scene from now on, instead of those before; for instruments that touch.
+  void surround(const std::vector<RoundBar>& bars) noexcept;
 
   /// Advances all instruments by dt [s] in steps of at most 1 ms. force [N] and torque [N m] of the scene on each tool,
   /// about its tip, frame W. Arrays have one entry an instrument.

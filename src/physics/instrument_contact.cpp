@@ -22,7 +22,8 @@ double nearest_to(const RoundBar& bar, const Vec3& p) noexcept {
 
 InstrumentContact::InstrumentContact(int n_tools, Surroundings surroundings)
     : surroundings_(std::move(surroundings)), tools_(static_cast<std::size_t>(n_tools)) {
-  const std::size_t n = tools_.size(), pairs = 9 * n * (n - 1) / 2 + 3 * n * surroundings_.bars.size();
+  const std::size_t n = tools_.size(), pairs = 9 * n * (n - 1) / 2 + 3 * n * kMostBars;
+  surroundings_.bars.reserve(kMostBars);
   touches_.reserve(kPlaces * pairs + 6 * n);
 }
 

@@ -36,6 +36,10 @@ class InstrumentContact {
  public:
   InstrumentContact(int n_tools, Surroundings surroundings);
 
+  /// What stands in the scene from now on, slowly moved: at most kMostBars.
+  void surround(const std::vector<RoundBar>& bars) noexcept { surroundings_.bars = bars; }
+  static constexpr std::size_t kMostBars = 8;
+
   /// Most touches at a time: of more, those that are nearest.
   static constexpr int kMost = 48;
 

@@ -55,6 +55,7 @@ LinePoint on_line(double u, double limit, double k) noexcept {
 
 NeedleBody::NeedleBody(NeedleShape shape, int n_tools) : tools(static_cast<std::size_t>(n_tools)), shape_(std::move(shape)), inertia_N_(shape_.inertia()) {
   tethers.reserve(128);
+  bars.reserve(InstrumentContact::kMostBars);
   for (int k = 0; k < kNeedleSamples; ++k) sample_arc_[static_cast<std::size_t>(k)] = shape_.length() * k / (kNeedleSamples - 1);
 }
 
@@ -164,6 +165,32 @@ void NeedleBody::add_jaws(const NeedleOptions& o, Trial& t) noexcept {
   }
 }
 
+/// A point that is past the axis, seen from where it began the step, is pushed back the way it came.
+void NeedleBody::add_bars(const NeedleState& s, const NeedleOptions& o, Trial& t) const noexcept {
+  for (const RoundBar& bar : bars) {
+    const Vec3 e = bar.b - bar.a;
+    const double ee = e.squaredNorm(), thickest = std::max(bar.r_a, bar.r_b), wire = 2.0 * shape_.bend_radius + shape_.wire_radius;
+    const auto along = [&](const Vec3& x) { return std::clamp((x - bar.a).dot(e) / ee, 0.0, 1.0); };
+    const auto away = [&](const Vec3& x) { return (x - bar.a - along(x) * e).norm(); };
+    if (std::min(away(t.X.p), away(s.X_WN.p)) > thickest + wire + (t.X.p - s.X_WN.p).norm()) continue;
+    for (const double arc : sample_arc_) {
+      const Vec3 r = t.X.q * shape_.point(arc), x = t.X.p + r, before = s.X_WN * shape_.point(arc);
+      const double f = along(x);
+      const Vec3 came = before - bar.a - along(before) * e, d = x - bar.a - f * e;
+      const double reach = bar.r_a + f * (bar.r_b - bar.r_a) + shape_.radius_at(arc), distance = d.norm();
+      if (distance < 1e-9 || came.norm() < 1e-9) continue;
+      const Vec3 back = came.normalized();
+      const double past = d.dot(back);
+      const bool through = past < 0.0 && (d - past * back).norm() < reach;
+      const Vec3 n = through ? back : Vec3(d / distance);
+      const double over = reach - (through ? past : distance);
+      if (over <= 0.0) continue;
+      t.energy += 0.5 * o.bar_stiffness * over * over;
+      add_point(r, o.bar_stiffness * over * n, o.bar_stiffness * n * n.transpose(), t.gradient, t.stiffness);
+    }
+  }
+}
+
 void NeedleBody::add_tethers(const NeedleOptions& o, Trial& t) noexcept {
   for (RodTether& c : tethers) {
     const Vec3 r = t.X.q * shape_.point(c.arc), d = t.X.p + r - c.anchor;
@@ -206,6 +233,7 @@ void NeedleBody::evaluate(const NeedleState& s, const NeedleOptions& o, Trial& t
   add_grips(s, t);
   add_sheet(s, o, t);
   add_jaws(o, t);
+  if (!bars.empty()) add_bars(s, o, t);
   add_tethers(o, t);
   if (dead_load_.isZero(0.0)) return;
   const Vec3 r = t.X.q * shape_.point(dead_arc_);

@@ -18,7 +18,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "physics/instrument.h"
+#include "physics/instrument_contact.h"
 #include "physics/needle_shape.h"
 #include "physics/rod_tether.h"
 
@@ -66,6 +66,7 @@ struct NeedleOptions {
   Vec3 gravity = Vec3(0, 0, -9.81);
   double sheet = -1e3;                 // [m], height of the background sheet
   double contact_stiffness = 500.0;    // [N/m], of a point of the wire on sheet or jaws
+  double bar_stiffness = 5000.0;       // [N/m], of a point of the wire on a bar: what a grip bears does not press it through
   double presliding = 1e-6;            // [m]
   int max_iterations = 30;
   double force_tolerance = 1e-9;       // [N]
@@ -82,6 +83,7 @@ class NeedleBody {
   explicit NeedleBody(NeedleShape shape, int n_tools);
 
   std::vector<NeedleTool> tools;
+  std::vector<RoundBar> bars;          // that stand in the scene, slowly moved: without friction, not passed by a point that goes through the axis in a step
   std::vector<RodTether> tethers;      // what holds the wire at an arc: thread, tissue; on the needle `along` points to its tip
 
   const NeedleShape& shape() const noexcept { return shape_; }
@@ -117,6 +119,7 @@ class NeedleBody {
   void add_grips(const NeedleState& s, Trial& t) noexcept;
   void add_sheet(const NeedleState& s, const NeedleOptions& o, Trial& t) noexcept;
   void add_jaws(const NeedleOptions& o, Trial& t) noexcept;
+  void add_bars(const NeedleState& s, const NeedleOptions& o, Trial& t) const noexcept;
   void add_tethers(const NeedleOptions& o, Trial& t) noexcept;
   static void add_surface(RodTether& c, const Vec3& d, const Vec3& r, Trial& t) noexcept;
   void fix_loads(const NeedleOptions& o) noexcept;

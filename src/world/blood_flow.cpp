@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/segment_distance.h"
 #include "world/observe.h"
 
 namespace filum {
 namespace {
 
 constexpr double kRise = 13332.0 / 0.1;   // [Pa/s]
-constexpr double kNearArm = 0.5e-3;       // [m], of closing tips from a clamp's arm
+constexpr double kNearArm = 0.5e-3;       // [m], of an arm from jaws that have it between them
+constexpr double kOnArm = 0.1e-3;         // [m], of jaws from an arm on which they have closed
 constexpr double kAcross = 0.5;           // least cosine between the vessel and the jaws' width
 constexpr double kFlat = 1.2;             // of twice the wall: jaws this near hold the vessel shut
 constexpr std::uint32_t kOff[2] = {8, 16};  // buttons (world/inputs.h)
@@ -20,12 +22,8 @@ double towards(double now, double wanted, double most) noexcept { return now + s
 
 
 Pose clamp_pose(const VesselModel& vessel, const ClampState& clamp, int which) noexcept {
-  DoubleClamp now = vessel.clamp;
-  now.gap = clamp.gap;
-  now.turn = clamp.turn;
-  Pose X = stump_poses(now, vessel.shape.stretch * vessel.shape.length)[which == 1 ? 1 : 0];
-  if (which == 2) X = X * Pose{Vec3(0, 0, 2.0 * vessel.clamp.side->reach), Quat(0, 1, 0, 0)};
-  if ((X.q * Vec3::UnitY()).z() < 0.0) X.q = X.q * Quat(0, 0, 0, 1);  // its arms stand out on both sides: the upper one
+  Pose X = held_end(vessel, clamp, which);
+  if ((X.q * Vec3::UnitY()).z() < 0.0) X.q = X.q * Quat(0, 0, 0, 1);
   return X;
 }
 
@@ -45,12 +43,28 @@ void BloodFlow::hear(BloodState& b, std::uint32_t buttons, Observation& o) const
     if ((buttons & kOff[k]) != 0) take_off(b, k, -1, o);
 }
 
-bool BloodFlow::open_with(VesselState& s, int tool, const Vec3& tip, Observation& o) const noexcept {
+/// Both arms, above the vessel, are between the jaws, which are commanded to close further and have come to the outer one.
+bool BloodFlow::squeezes(const ClampState& clamp, int which, const InstrumentParameters& jaws, const InstrumentState& state) const noexcept {
+  const ClampArms arms = clamp_arms(model_);
+  const Pose X_TC = state.X_WT.inverse() * clamp_pose(model_, clamp, which);
+  double outermost = 0.0, opening = 0.0;
+  for (const double side : {-1.0, 1.0}) {
+    const Vec3 a = X_TC * Vec3(side * arms.beside, model_.radius, -arms.behind), b = X_TC * Vec3(side * arms.beside, arms.reach, -arms.behind);
+    const SegmentPair c = closest_points(a, b, Vec3::Zero(), 0.5 * jaws.jaw_length * Vec3::UnitZ());
+    const Vec3 p = a + c.s * (b - a);
+    const double half = (jaws.jaw_length - p.z()) * std::sin(0.5 * state.angle);
+    const double outer = std::abs(p.x()) + arms.radius;
+    if (c.distance > std::hypot(outer, kNearArm) || std::abs(p.y()) > kNearArm || outer > half + kNearArm) return false;
+    if (outer < outermost) continue;
+    outermost = outer;
+    opening = half;
+  }
+  return 0.5 * jaws.jaw_length * state.grip_command < outermost - kOnArm && opening < outermost + kOnArm;
+}
+
+bool BloodFlow::open_with(VesselState& s, int tool, const InstrumentParameters& jaws, const InstrumentState& state, Observation& o) const noexcept {
   for (int k = 0; k < 2; ++k) {
-    if (s.blood.off[static_cast<std::size_t>(k)] != 0) continue;
-    const Vec3 p = clamp_pose(model_, s.clamp, k).inverse() * tip;
-    const Vec3 away = p - std::clamp(p.y(), model_.radius, clamp_reach(model_)) * Vec3::UnitY();
-    if (away.norm() > kNearArm) continue;
+    if (s.blood.off[static_cast<std::size_t>(k)] != 0 || !squeezes(s.clamp, k, jaws, state)) continue;
     take_off(s.blood, k, tool, o);
     return true;
   }

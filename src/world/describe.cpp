@@ -99,7 +99,7 @@ void describe_tissue(const VesselModel& model, TissueDescription& d) {
     d.edges = cut_edges(model);
   }
   d.radius = model.radius;
-  d.clamp_reach = model.lumen ? clamp_reach(model) : 0.0;
+  d.clamp_reach = model.lumen ? clamp_arms(model).reach : 0.0;
   d.rest = model.mesh.nodes;
   for (const Triangle& t : face_triangles(model.mesh)) d.triangles.push_back({t[0], t[1], t[2]});
 }

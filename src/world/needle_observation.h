@@ -112,7 +112,7 @@ struct TissueDescription {
   std::array<CutEdge, 2> edges;           // of a cut that runs round no one axis (end to side), the same way round from their heels
   Vec3 axis = Vec3::UnitY(), middle = Vec3::Zero();  // unit; [m], between the cut edges, at rest
   double radius = 0.0;                    // [m], of the outer surface at rest
-  double clamp_reach = 0.0;               // [m], of a clamp's arm from the vessel's axis; 0: no clamps
+  double clamp_reach = 0.0;               // [m], of a clamp's arms to both sides, from the vessel's axis; 0: no clamps
   std::vector<std::array<int, 3>> triangles;
   Points rest;                            // [m], 3 x n
 };

@@ -98,7 +98,7 @@ void NeedleScene::meet_tools(State& s, const std::vector<ObstacleBody>& from, Ob
     t.grip_force = in.grip_force;
     t.bars = instrument_bars(p, in.angle, 2.0 * body_.shape().wire_radius);
     const bool meet = in.angle < 1.15 * stop_angle(p) && p.kind != "scissors";
-    if (tissue_ && meet && grip.held == 0 && s.armed[i] != 0 && tissue_->open_clamp(s.tissue, tool, in.X_WT.p, o)) s.armed[i] = 0;
+    if (tissue_ && p.kind != "scissors" && grip.held == 0 && s.armed[i] != 0 && tissue_->open_clamp(s.tissue, tool, {p, in}, o)) s.armed[i] = 0;
     const bool closed = meet && in.grip_force > 0.0;
     if (grip.held != 0 && !closed) {
       say(o, "needle-released", tool, grip.arc / body_.shape().length(), "-");

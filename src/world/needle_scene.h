@@ -41,6 +41,8 @@ class NeedleScene {
   /// The tissue's turn. Adds the needle's pull to the forces on the tools.
   void after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept;
   void observe(const State& s, Observation& o) const noexcept;
+  /// Bars that stand in the scene.
+  void surround(const std::vector<RoundBar>& bars) noexcept { body_.bars = bars; }
   static bool held_by(const State& s, int tool) noexcept { return s.needle.grips[static_cast<std::size_t>(tool)].held != 0; }
 
  private:

@@ -27,8 +27,8 @@ class VesselScene {
   /// The clamp's buttons: `next` (4) turns it over and back, or to the next of the scene's turns, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
   /// step then carries the stumps along. 8 and 16 take the upstream and the downstream clamp off; then it moves no more.
   void handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept;
-  /// The tips of this tool have just closed: true if they have opened a clamp.
-  bool open_clamp(VesselState& s, int tool, const Vec3& tip, Observation& o) const noexcept { return blood_ && blood_->open_with(s, tool, tip, o); }
+  /// True if these jaws, closing, have just opened a clamp.
+  bool open_clamp(VesselState& s, int tool, const GrippingTool& t, Observation& o) const noexcept { return blood_ && blood_->open_with(s, tool, t.parameters, t.state, o); }
   /// [rad], at which jaws rest on the tissue they hold, or press a vessel flat that they have between them; 0 where they do not.
   double stop_angle(const VesselState& s, int tool, const GrippingTool& jaws) const noexcept;
   /// Jaws that `may_take` hold the tissue between them; opened they let it go.

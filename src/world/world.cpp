@@ -7,6 +7,7 @@
 #include "base/stage_clock.h"
 #include "physics/ode_trouble.h"
 #include "world/brain_scene.h"
+#include "world/clamp_bars.h"
 #include "world/fixtures.h"
 #include "world/fresh_suture.h"
 #include "world/model.h"
@@ -14,6 +15,7 @@
 #include "world/observe.h"
 #include "world/state.h"
 #include "world/state_hash.h"
+#include "world/vessel_model.h"
 
 namespace filum {
 namespace {
@@ -44,10 +46,12 @@ struct World::Impl {
   RodStepSummary solver;
   std::unique_ptr<BrainScene> brain;  // in scenes of brain retraction: then it takes the whole step
   std::unique_ptr<NeedleScene> needle;  // in scenes with one
+  std::unique_ptr<ClampBars> clamp;     // that holds two vessels
   Observation observation;
 
   explicit Impl(std::shared_ptr<const Model> m);
   void read_inputs(const Inputs& inputs) noexcept;
+  void move_clamp() noexcept;
   void move_instruments() noexcept;
   void open_and_close_jaws() noexcept;
   void take_or_cut(int tool) noexcept;
@@ -109,6 +113,10 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
   state.force.assign(n_tools, Vec3::Zero());
   state.torque.assign(n_tools, Vec3::Zero());
   add_fixtures(*model, rod.obstacles);
+  if (model->vessel && model->vessel->lumen && model->vessel->clamp_touches) {
+    clamp = std::make_unique<ClampBars>(*model->vessel);
+    clamp->add(state.tissue.clamp, model->jaw_friction, rod.obstacles);
+  }
   size_observation(*model, observation);
   observe();
 }
@@ -139,6 +147,7 @@ void World::step(const Inputs& inputs) noexcept {
     return;
   }
   impl_->read_inputs(inputs);
+  impl_->move_clamp();
   impl_->move_instruments();
   impl_->open_and_close_jaws();
   impl_->step_thread();
@@ -169,6 +178,13 @@ void World::Impl::read_inputs(const Inputs& inputs) noexcept {
     buttons |= in.buttons;
   }
   if (needle) needle->handle_buttons(state, buttons, observation);
+}
+
+void World::Impl::move_clamp() noexcept {
+  if (!clamp) return;
+  clamp->move(state.tissue, rod.obstacles);
+  instruments.surround(clamp->solid());
+  needle->surround(clamp->solid());
 }
 
 void World::Impl::move_instruments() noexcept {
@@ -323,6 +339,7 @@ void World::restore(const State& state) {
   impl_->state = state;
   if (impl_->brain) impl_->brain->match(state.brain);
   if (impl_->needle) impl_->needle->match(state);
+  if (impl_->clamp) impl_->clamp->match(state.tissue, impl_->rod.obstacles);
   impl_->observation.n_events = 0;
   impl_->observation.min_gap = std::numeric_limits<double>::infinity();
   impl_->observe();

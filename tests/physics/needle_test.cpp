@@ -61,6 +61,55 @@ TEST(Needle, FallsAndComesToRestOnTheSheet) {
   EXPECT_NEAR(std::abs((s.X_WN.q * Vec3::UnitZ()).z()), 1.0, 1e-3) << "lies flat";
 }
 
+/// A needle on springs, drawn sideways against a bar by `way` [m] at so much a step.
+struct AgainstBar {
+  static constexpr double kHand = 200.0;  // [N/m], three springs together
+  NeedleShape shape;
+  NeedleBody body{shape, 0};
+  NeedleState state;
+  NeedleOptions options;
+  RoundBar bar;
+  AgainstBar() {
+    options.gravity.setZero();
+    const Vec3 middle = shape.point(0.5 * shape.length()), out = middle.normalized();
+    bar = {middle + 0.4e-3 * out - 2e-3 * Vec3::UnitZ(), middle + 0.4e-3 * out + 2e-3 * Vec3::UnitZ(), 0.2e-3, 0.2e-3};
+    body.bars.push_back(bar);
+  }
+  Vec3 out() const { return shape.point(0.5 * shape.length()).normalized(); }
+  void draw(double way, double a_step, int wait = 200) {
+    for (double gone = 0.0; gone < way || wait-- > 0;) {
+      gone = std::min(way, gone + a_step);
+      body.tethers.clear();
+      for (const double share : {0.0, 0.5, 1.0}) {
+        RodTether t;
+        t.arc = share * shape.length();
+        t.anchor = shape.point(t.arc) + gone * out();
+        t.stiffness = kHand / 3.0 * Mat3::Identity();
+        body.tethers.push_back(t);
+      }
+      body.step(state, options);
+    }
+  }
+  /// [m], how far the wire's middle has gone.
+  double gone() const { return (state.X_WN * shape.point(0.5 * shape.length()) - shape.point(0.5 * shape.length())).dot(out()); }
+};
+
+TEST(Needle, PressesOnABarAsItsHandDoes) {
+  AgainstBar n;
+  const double room = 0.4e-3 - 0.2e-3 - n.shape.wire_radius, way = 0.5e-3;
+  n.draw(way, 2e-6);
+  const double soft = n.options.bar_stiffness;  // hand and contact in series
+  EXPECT_NEAR(n.gone(), room + (way - room) * AgainstBar::kHand / (AgainstBar::kHand + soft), 0.02 * (way - room));
+}
+
+TEST(Needle, DoesNotPassABarAtTheSpeedOfHands) {
+  for (const double speed : {0.05, 0.2, 0.5}) {
+    AgainstBar n;
+    n.draw(1.5e-3, speed * n.options.dt);
+    EXPECT_LT(n.gone(), 0.4e-3) << speed << ": its axis is 0.4 mm away";
+  }
+}
+
 TEST(Needle, GripBearsThePullOfTwoPads) {
   const double grip = 0.5, limit = 2.0 * Held::make(0).pad_friction * grip;  // 0.3 N
   Held below(grip), above(grip);

@@ -1,4 +1,4 @@
-import { clock, milliNewton, quantity } from "@viewer/ui/format";
+import { clock, eventWords, milliNewton, quantity } from "@viewer/ui/format";
 import { barScale, ForcePanel, StepPanel, tensionZone, WarningList } from "@viewer/ui/panels";
 import { knotPicture, kThrows, strands, taskPicture } from "@viewer/ui/pictures";
 import { chartsOf } from "@viewer/ui/plots";
@@ -7,6 +7,15 @@ import type { Frame, Scene } from "@viewer/messages";
 import { frameAt as sample, kScene } from "./sample_frames.mjs";
 
 const scene = kScene as Scene, frameAt = sample as (time: number, id: number, duration: number) => Frame;
+
+describe("events", () => {
+  it("are told in words", () => {
+    expect(eventWords({ name: "goal-done", value: 3 })).toBe("Step 3 done");
+    expect(eventWords({ name: "solver-trouble", value: 8e-4 })).toContain("imprecise");
+    expect(eventWords({ name: "needle-taken", value: 0.1 })).toBe("Needle taken");
+    expect(eventWords({ name: "knot", value: 0, text: "square" })).toBe("square");
+  });
+});
 
 describe("numbers", () => {
   it("carry their unit", () => {

@@ -81,7 +81,7 @@ TEST(BloodFlow, SameAfterRestoreAndWithoutAllClampsOnAsBefore) {
   EXPECT_GT(with.leak, 100.0 / 60e6);
 }
 
-/// Jaws that come down open over the clamp's arm and close.
+/// Jaws that come down open over the clamp's arms and close.
 TEST(BloodFlow, ForcepsOpenAClamp) {
   World w(stumps());
   const Pose clamp = clamp_pose(*stumps()->vessel, w.state().tissue.clamp, 0);
@@ -89,7 +89,7 @@ TEST(BloodFlow, ForcepsOpenAClamp) {
   ToolInput& t = in.tools[1];
   t.valid = true;
   t.X_WD = stumps()->instrument_start[1];
-  t.X_WD.p = clamp * Vec3(0, clamp_reach(*stumps()->vessel) - 0.2e-3, 0);
+  t.X_WD.p = clamp * Vec3(0, clamp_arms(*stumps()->vessel).reach - 0.4e-3, 0);
   t.grip_angle = 0.2;
   EXPECT_EQ(count(steps(w, in, 0.4), "clamp-off"), 0);
   t.grip_angle = -0.05;

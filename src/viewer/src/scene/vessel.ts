@@ -10,6 +10,7 @@ const kBlood = 0x8c0f14;
 const kDrop = 0.38; // [mm3], of a drop that lets go: 0.9 mm across
 const kJet = 2.0; // [ml/min], of a sector, from which blood comes as a jet
 const kPool = 0.5; // [mm], depth of the pool on the sheet
+const kArm = 0.2, kBehind = 0.35; // [mm], an arm's radius, how far it stands behind the held end: as they are touched (world/clamp_bars.h)
 const kFull = 20; // [mmHg], from which a stump looks full
 
 export function isLiving(name: string): boolean { return /arter|vein/.test(name); }
@@ -50,14 +51,11 @@ class Clamp {
   private readonly beyond: THREE.Mesh;
 
   constructor(shape: TissueShape, materials: Materials, vessel: THREE.Material) {
-    const r = shape.radius * kMm, reach = shape.clamp_reach * kMm, plate = 0.16;
+    const r = shape.radius * kMm, reach = shape.clamp_reach * kMm;
     for (const side of [-1, 1]) {
-      const arm = new THREE.Mesh(new THREE.BoxGeometry(plate, reach + 1.4 * r, 0.7), materials.clamp);
-      arm.position.set(side * (0.55 * r + plate / 2), (reach - 1.4 * r) / 2, -0.35);
-      const grip = new THREE.Mesh(new THREE.CylinderGeometry(0.12, 0.12, 0.7, 16), materials.bright);
-      grip.rotation.x = Math.PI / 2;
-      grip.position.set(side * (0.55 * r + plate / 2), reach, -0.35);
-      this.jaws.add(arm, grip);
+      const arm = new THREE.Mesh(new THREE.CapsuleGeometry(kArm, 2 * (reach - kArm), 8, 20), materials.clamp);
+      arm.position.set(side * (0.55 * r + kArm), 0, -kBehind);
+      this.jaws.add(arm);
     }
     this.beyond = new THREE.Mesh(new THREE.CylinderGeometry(r, 0.85 * r, 7, 24, 1, true), vessel); // the vessel goes on behind its clamp
     this.beyond.rotation.x = Math.PI / 2;
@@ -202,7 +200,7 @@ export class Vessel {
 
   /// The bar that joins the clamps of one line, beside the vessel and below it, while both are on.
   private placeBar(blood: Blood): void {
-    const ends = [this.clamps[0], this.clamps[this.clamps.length - 1]].map((one) => one.group.localToWorld(new THREE.Vector3(0, 0, -0.35)));
+    const ends = [this.clamps[0], this.clamps[this.clamps.length - 1]].map((one) => one.group.localToWorld(new THREE.Vector3(0, 0, -kBehind)));
     const span = ends[1].clone().sub(ends[0]), down = new THREE.Vector3(0, 0, -1.15);
     this.bar.visible = !blood.clamps[0].off && !blood.clamps[blood.clamps.length - 1].off;
     this.bar.position.copy(ends[0]).addScaledVector(span, 0.5).add(down);

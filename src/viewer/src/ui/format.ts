@@ -51,6 +51,7 @@ const kEventTexts: Record<string, string> = {
   "suture-held": "No fresh suture: let go of needle and thread first",
   "suture-in-tissue": "No fresh suture: the needle's thread still runs through the tissue; cut both ends first",
   "suture-no-room": "No fresh suture: there is too much thread in the field",
+  "solver-trouble": "The simulation was imprecise for a moment",
   "suture-in-the-way": "No fresh suture: clear the place where the first one lay",
 };
 
@@ -60,6 +61,12 @@ export function words(name: string): string {
   if (name === "sparc" || name === "ldlj") return name.toUpperCase();
   const text = name.replace(/[-_]+/g, " ");
   return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/// What happened, as it is told to people.
+export function eventWords(event: { name: string; value: number; text?: string }): string {
+  if (event.text) return event.text;
+  return event.name === "goal-done" ? `Step ${event.value} done` : words(event.name);
 }
 
 export const kKnotTitles: Record<string, string> = {

@@ -9,7 +9,7 @@ import { clear, h, setAttribute, setText } from "./dom";
 import { opticsBar } from "./field_view";
 import { microscopeKey, microscopeMouse } from "./microscope_keys";
 import { ForcePanel, HealthPanel, StepPanel, toolTitle, WarningList } from "./panels";
-import { quantity, words, kFrequent } from "./format";
+import { quantity, eventWords, kFrequent } from "./format";
 import { TissuePanel } from "./tissue_panel";
 
 const kPanelsEvery = 60; // [ms]
@@ -183,7 +183,7 @@ export class LivePage implements Page {
     if (kFrequent.includes(event.name)) return;
     if (event.name === "blade-change-refused") this.app.sound.play("warn");
     const value = event.unit !== "-" && event.value !== 0 ? ` ${quantity(event.value, event.unit)}` : "";
-    this.events.prepend(h("li", {}, h("span", { class: "when" }, `${event.time.toFixed(1)} s`), event.text || words(event.name) + value));
+    this.events.prepend(h("li", {}, h("span", { class: "when" }, `${event.time.toFixed(1)} s`), eventWords(event) + (event.text ? "" : value)));
     while (this.events.children.length > kEventsShown) this.events.lastElementChild!.remove();
   }
 

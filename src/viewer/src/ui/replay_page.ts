@@ -4,7 +4,7 @@ import type { Result, ServerMessage, TimedEvent } from "../messages";
 import type { LineState } from "../net/connection";
 import { clear, h, setText } from "./dom";
 import { opticsBar } from "./field_view";
-import { clock, quantity, words } from "./format";
+import { clock, quantity, eventWords } from "./format";
 import { focusUses, microscopeKey, microscopeMouse } from "./microscope_keys";
 import { BrainPanel } from "./brain_panel";
 import { ForcePanel, StepPanel, WarningList } from "./panels";
@@ -149,7 +149,7 @@ export class ReplayPage implements Page {
     this.steps = new StepPanel(scene.title);
     this.forces = new ForcePanel(scene);
     const list = this.events.map((event) => h("li", {}, h("button", { class: "eventbutton", onclick: () => this.seek(event.time) },
-      h("span", { class: "when" }, `${event.time.toFixed(1)} s`), h("span", {}, event.text || words(event.name)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit)))));
+      h("span", { class: "when" }, `${event.time.toFixed(1)} s`), h("span", {}, eventWords(event)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit)))));
     this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), h("ul", { class: "events long" }, ...list)));
     this.brain = scene.brain ? new BrainPanel(scene, () => this.view.redraw()) : null;
     this.stitches = this.result?.stitches ? new StitchList(this.result, (stitch, go) => this.showStitch(stitch, go)) : null;
@@ -215,7 +215,7 @@ export class ReplayPage implements Page {
     const duration = this.app.replay?.duration ?? 0;
     clear(this.marks);
     if (duration <= 0) return;
-    for (const event of this.events) this.marks.append(h("span", { style: `left:${((100 * event.time) / duration).toFixed(2)}%`, title: `${event.time.toFixed(1)} s ${event.text || words(event.name)}` }));
+    for (const event of this.events) this.marks.append(h("span", { style: `left:${((100 * event.time) / duration).toFixed(2)}%`, title: `${event.time.toFixed(1)} s ${eventWords(event)}` }));
   }
 
   private showFrame(): void {
