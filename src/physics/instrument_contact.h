@@ -26,7 +26,7 @@ struct InstrumentTouch {
   double gap = 0.0;                  // [m], below zero: into each other
 };
 
-/// What stands still in the scene.
+/// What stands in the scene.
 struct Surroundings {
   std::vector<RoundBar> bars;
   double sheet = -std::numeric_limits<double>::infinity();  // [m], its height
@@ -38,7 +38,7 @@ class InstrumentContact {
 
   /// What stands in the scene from now on, slowly moved: at most kMostBars.
   void surround(const std::vector<RoundBar>& bars) noexcept { surroundings_.bars = bars; }
-  static constexpr std::size_t kMostBars = 8;
+  static constexpr std::size_t kMostBars = 10;  // a post's two, a clamp's seven
 
   /// Most touches at a time: of more, those that are nearest.
   static constexpr int kMost = 48;

@@ -25,7 +25,7 @@ Pose held_end(const VesselModel& vessel, const ClampState& clamp, int which) noe
   return which == 2 ? X * Pose{Vec3(0, 0, 2.0 * vessel.clamp.side->reach), Quat(0, 1, 0, 0)} : X;
 }
 
-ClampBars::ClampBars(const VesselModel& vessel) : model_(vessel) { solid_.reserve(3 * static_cast<std::size_t>(n_clamps(vessel)) + 1); }
+ClampBars::ClampBars(const VesselModel& vessel) : model_(vessel) { solid_.reserve(2 * static_cast<std::size_t>(n_clamps(vessel)) + 1); }
 
 void ClampBars::add(const ClampState& clamp, double friction, RodObstacles& obstacles) {
   first_body_ = obstacles.bodies.size();

@@ -47,6 +47,7 @@ struct World::Impl {
   std::unique_ptr<BrainScene> brain;  // in scenes of brain retraction: then it takes the whole step
   std::unique_ptr<NeedleScene> needle;  // in scenes with one
   std::unique_ptr<ClampBars> clamp;     // that holds two vessels
+  std::vector<RoundBar> still, around;  // bars that instruments touch: those that stand still, and the clamp's besides
   Observation observation;
 
   explicit Impl(std::shared_ptr<const Model> m);
@@ -116,6 +117,8 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
   if (model->vessel && model->vessel->lumen && model->vessel->clamp_touches) {
     clamp = std::make_unique<ClampBars>(*model->vessel);
     clamp->add(state.tissue.clamp, model->jaw_friction, rod.obstacles);
+    still = surroundings(*model).bars;
+    around.reserve(InstrumentContact::kMostBars);
   }
   size_observation(*model, observation);
   observe();
@@ -183,7 +186,9 @@ void World::Impl::read_inputs(const Inputs& inputs) noexcept {
 void World::Impl::move_clamp() noexcept {
   if (!clamp) return;
   clamp->move(state.tissue, rod.obstacles);
-  instruments.surround(clamp->solid());
+  around = still;
+  around.insert(around.end(), clamp->solid().begin(), clamp->solid().end());
+  instruments.surround(around);
   needle->surround(clamp->solid());
 }
 

@@ -94,10 +94,10 @@ TEST(ClampBars, ToolsAndNeedleTouchArmsAndBarOnly) {
 
 /// Forceps closed and led across the upstream clamp, through both arms, at half their height.
 struct Across {
-  World world{stumps()};
+  World world;
   Inputs in;
   Vec3 middle, across;
-  Across() {
+  explicit Across(std::shared_ptr<const Model> model = stumps()) : world(std::move(model)) {
     const ClampState clamp = world.state().tissue.clamp;
     const ClampArms arms = clamp_arms(vessel());
     const Pose X = held_end(vessel(), clamp, 0);
@@ -128,6 +128,22 @@ TEST(ClampBars, InstrumentsDoNotPassTheArmsAtTheSpeedOfHands) {
     EXPECT_LT(a.gone(), -clamp_arms(vessel()).beside) << speed;
     EXPECT_GT(a.gone(), -clamp_arms(vessel()).beside - 1e-3) << speed << ": at the arm";
   }
+}
+
+/// A bar that stands still, between the hand and the clamp, is not forgotten for the clamp's.
+TEST(ClampBars, WhatStandsBesideTheClampIsTouchedStill) {
+  const Across there;
+  auto model = std::make_shared<Model>(*stumps());
+  model->description.has_post = true;
+  PostShape& post = model->description.post;
+  post.p_W = there.middle - 2e-3 * there.across;
+  post.axis_W = Vec3::UnitY();
+  post.half_length = 2e-3;
+  post.radius = 0.2e-3;
+  model->description.base = post;
+  Across a(model);
+  a.lead(4e-3, 0.05);
+  EXPECT_LT(a.gone(), -2e-3);
 }
 
 TEST(ClampBars, SameAfterRestoreInTheMiddleOfATurn) {
