@@ -50,13 +50,13 @@ double widest(const VesselMesh& mesh, const WallState& w) {
   return radius;
 }
 
-/// Comes up along y, lies round the tube by `angle` [rad] and leaves it straight on.
-Points over_the_tube(double R, double angle) {
+/// Comes up along y, lies round the tube by `angle` [rad], `aside` [m] of its middle row of nodes, and leaves it straight on.
+Points over_the_tube(double R, double angle, double aside) {
   const int n = static_cast<int>((angle * R + 1.5 * kHang) / kEdge) + 1;
   Points nodes(3, n);
   for (int i = 0; i < n; ++i) {
     const double s = kEdge * i - kHang, a = std::clamp(s / R, 0.0, angle);
-    nodes.col(i) = Vec3(-R * std::cos(a), R * std::sin(a), 0.5 * kLength) + (s - a * R) * Vec3(std::sin(a), std::cos(a), 0.0);
+    nodes.col(i) = Vec3(-R * std::cos(a), R * std::sin(a), 0.5 * kLength + aside) + (s - a * R) * Vec3(std::sin(a), std::cos(a), 0.0);
   }
   return nodes;
 }
@@ -74,8 +74,8 @@ struct Drawn {
 
 class WallCapstan {
  public:
-  WallCapstan(double mu, double angle)
-      : wall_(held_tube()), w_(under_pressure(wall_)), probe_(limp(), over_the_tube(widest(wall_.mesh(), w_) + 5e-6, angle)), contact_(probe_.state.n),
+  WallCapstan(double mu, double angle, double aside)
+      : wall_(held_tube()), w_(under_pressure(wall_)), probe_(limp(), over_the_tube(widest(wall_.mesh(), w_) + 5e-6, angle, aside)), contact_(probe_.state.n),
         away_(std::sin(angle), std::cos(angle), 0.0) {
     contact_.law.friction = mu;
     probe_.options = RodStepOptions();
@@ -131,8 +131,8 @@ struct Means {
   double ratio = kNaN, angle = kNaN;
 };
 
-Means draw(double mu, double angle, double speed, double way) {
-  WallCapstan rig(mu, angle);
+Means draw(double mu, double angle, double speed, double way, double aside = 0.0) {
+  WallCapstan rig(mu, angle, aside);
   for (int k = 1; k <= 100; ++k)
     if (!rig.step(kSlack * std::min(1.0, k / 50.0), 0.0)) return {};
   const double move = speed * rig.dt();
@@ -170,17 +170,17 @@ void list_one(ProblemList& list, const char* label, double mu, double angle, con
                   }});
 }
 
-void list_slow(ProblemList& list) {
+void list_slow(ProblemList& list, const char* name, const char* where, double aside) {
   constexpr double kMu = 0.3, kSpeed = 30e-6, kSlowWay = 300e-6;  // [-], [m/s], [m]: 0.06 um a step
   ValidationProblem p;
-  p.name = "capstan-wall-slow-0.3";
+  p.name = name;
   p.source = "Euler-Eytelwein as above; Coulomb friction does not depend on speed";
-  p.quantity = "ratio of tensions over exp(mu theta), half a turn over a vessel wall, mu = 0.3, drawn at 0.03 mm/s";
+  p.quantity = std::string("ratio of tensions over exp(mu theta), half a turn over a vessel wall, mu = 0.3, drawn at 0.03 mm/s").append(where);
   p.expected = 1.0;
   p.tolerance = 2e-2;
   p.note = "no order: the climb T theta d/R that the others follow to nothing is 4e-4 here; what is left is the facets' normals";
-  list.push_back({p, [](ValidationProblem& r) {
-                    const Means m = draw(kMu, kPi, kSpeed, kSlowWay);
+  list.push_back({p, [aside](ValidationProblem& r) {
+                    const Means m = draw(kMu, kPi, kSpeed, kSlowWay, aside);
                     r.got = m.over_euler;
                     char seen[120];
                     std::snprintf(seen, sizeof seen, "; there ratio %.4f, theta %.4f rad", m.ratio, m.angle);
@@ -191,7 +191,8 @@ void list_slow(ProblemList& list) {
 }  // namespace
 
 void list_wall_capstan(ProblemList& list) {
-  list_slow(list);
+  list_slow(list, "capstan-wall-slow-0.3", "", 0.0);
+  list_slow(list, "capstan-wall-slow-beside-0.3", ", laid 20 um beside the dent's bottom, on folds of the mesh", 20e-6);
   list_one(list, "0.1", 0.1, kPi, "half a turn");
   list_one(list, "0.3", 0.3, kPi, "half a turn");
   list_one(list, "quarter-0.3", 0.3, 0.5 * kPi, "a quarter of a turn");

@@ -53,10 +53,8 @@ class Grid {
   std::vector<int> line_;
 };
 
-constexpr std::array<std::array<int, 4>, 6> kSides = {{{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}};
-
 void add_faces(VesselMesh& m, const Grid& g, int e, int i, int j, int k) {
-  const auto add = [&](int side, WallSurface s) { m.faces.push_back({e, s, kSides[static_cast<std::size_t>(side)]}); };
+  const auto add = [&](int side, WallSurface s) { m.faces.push_back({e, s, kElementSides[static_cast<std::size_t>(side)]}); };
   const auto border = [&](int side, int ii, int jj) {
     if (g.has(ii, jj)) return;
     const bool within = jj >= 0 && jj < g.n[1] && (g.closed || (ii >= 0 && ii < g.n[0]));

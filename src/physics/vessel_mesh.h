@@ -17,6 +17,9 @@ enum class WallSurface { inner, outer, edge, end };  // edge: of the cut or open
 
 using Corners = Eigen::Matrix<double, 3, 8>;
 
+/// Corners of each side of an element, turning about its outward normal: at xi = 1, xi = -1, eta = 1 and so on.
+inline constexpr std::array<std::array<int, 4>, 6> kElementSides = {{{1, 3, 7, 5}, {0, 4, 6, 2}, {2, 6, 7, 3}, {0, 1, 5, 4}, {4, 5, 7, 6}, {0, 2, 3, 1}}};
+
 struct WallFace {
   int element = 0;
   WallSurface surface = WallSurface::inner;

@@ -63,7 +63,8 @@ struct WallCrossing {
   WallPoint point;
   WallSurface surface = WallSurface::inner;
   double fraction = 1.0;       // along the segment
-  Vec3 normal = Vec3::Zero();  // unit, outward from the tissue
+  Vec3 normal = Vec3::Zero();  // unit, outward from the tissue, of the face
+  Vec3 away = Vec3::Zero();    // unit, of what is nearest: in which the distance grows outward; at a rim, a ridge or in a fold not the normal of either face
   int triangle = -1;           // of triangles()
   int layer = 0;
 };
@@ -104,6 +105,8 @@ class VesselWall {
   // --- questions ---------------------------------------------------------------------------------------------------
   Vec3 position(const WallState& state, const WallPoint& at) const noexcept;  // [m]
   Vec3 velocity(const WallState& state, const WallPoint& at) const noexcept;  // [m/s]
+  /// [m], of a point of the surface on its triangles, where crossing() and nearest() see it; the element's side is up to a quarter of its twist beside them.
+  Vec3 on_triangle(const WallState& state, const WallPoint& at) const noexcept;
   /// Deformed directions at a point: columns around, along, outward, not of unit length.
   Mat3 directions(const WallState& state, const WallPoint& at) const noexcept;
   int layer_at(const WallPoint& at) const noexcept { return elements_.layer_at(at.element, at.local.z()); }

@@ -44,6 +44,20 @@ Vec3 VesselWall::velocity(const WallState& state, const WallPoint& at) const noe
   return p;
 }
 
+Vec3 VesselWall::on_triangle(const WallState& state, const WallPoint& at) const noexcept {
+  int axis = 0;
+  at.local.cwiseAbs().maxCoeff(&axis);
+  const auto& side = kElementSides[static_cast<std::size_t>(2 * axis + (at.local[axis] < 0.0))];
+  const auto& nodes = mesh_.elements[static_cast<std::size_t>(at.element)];
+  const auto corner = [&](std::size_t c) -> Vec3 { return state.x.col(nodes[static_cast<std::size_t>(side[c])]); };
+  const auto share = [&](std::size_t c) {  // of the way from corner 0 to c, by the local coordinates
+    const Vec3 from = corner_local(side[0]), way = corner_local(side[c]) - from;
+    return (at.local - from).dot(way) / way.squaredNorm();
+  };
+  const double u = share(1), v = share(3);
+  return u >= v ? Vec3((1.0 - u) * corner(0) + (u - v) * corner(1) + v * corner(2)) : Vec3((1.0 - v) * corner(0) + u * corner(2) + (v - u) * corner(3));
+}
+
 Mat3 VesselWall::directions(const WallState& state, const WallPoint& at) const noexcept {
   const auto& nodes = mesh_.elements[static_cast<std::size_t>(at.element)];
   Mat3 g = Mat3::Zero();
@@ -76,6 +90,12 @@ void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, co
   for (int k = 0; k < 3; ++k) c.point.local += weights[k] * corner_local(face.corner[corner[static_cast<std::size_t>(k)]]);
   const Triangle& t = triangles[static_cast<std::size_t>(triangle)];
   c.normal = Vec3(x.col(t[1]) - x.col(t[0])).cross(Vec3(x.col(t[2]) - x.col(t[0]))).normalized();
+}
+
+/// From the place that is nearest to q, at `distance`.
+Vec3 away_from(const WallCrossing& c, const Vec3& place, const Vec3& q, double distance) noexcept {
+  constexpr double kOnSurface = 1e-9;  // [m], distance that is none
+  return distance > kOnSurface ? Vec3((q - place) / std::copysign(distance, c.fraction)) : c.normal;
 }
 
 }  // namespace
@@ -140,7 +160,9 @@ WallCrossing VesselWall::nearest(const WallState& state, const Vec3& q, double r
   }
   if (triangle < 0) return best;
   describe(mesh_, triangles(), state.x, triangle, place.weights, best);
-  best.fraction = (q - place.point).dot(best.normal) >= 0.0 ? least : -least;
+  const double distance = (q - place.point).norm();
+  best.fraction = (q - place.point).dot(best.normal) >= 0.0 ? distance : -distance;
+  best.away = away_from(best, place.point, q, distance);
   best.layer = layer_at(best.point);
   return best;
 }
@@ -161,6 +183,7 @@ int VesselWall::around(const WallState& state, const Vec3& q, double radius, Wal
     for (; j > 1 && places[j - 1].fraction > distance; --j) places[j] = places[j - 1];  // the nearest first
     describe(mesh_, triangles(), state.x, k, weights, places[j]);
     places[j].fraction = distance;
+    places[j].away = away_from(places[j], p, q, distance);
     places[j].layer = layer_at(places[j].point);
   };
   for (const int k : found_) {

@@ -9,14 +9,13 @@ namespace {
 constexpr double kShallow = 50e-6;   // [m], half a wall: from deeper within a touch stays where it went in
 constexpr double kLightest = 5e-6;   // [N], half of what the wall's step leaves unbalanced
 constexpr double kAlong = 0.1e-3;    // [m], by which a place goes along in a step at most
-constexpr double kOnSurface = 1e-9;  // [m], distance that is none
 
 }  // namespace
 
 RodTether hold_touch(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x) noexcept {
   RodTether t;
   t.arc = touch.arc;
-  t.anchor = wall.position(w, touch.at) + law.radius * touch.normal;
+  t.anchor = wall.on_triangle(w, touch.at) + law.radius * touch.normal;
   t.stiffness = law.stiffness * touch.normal * touch.normal.transpose();
   const double depth = (t.anchor - x).dot(touch.normal);
   if (depth > kDeepest) t.anchor -= (depth - kDeepest) * touch.normal;
@@ -29,10 +28,10 @@ RodTether hold_touch(const VesselWall& wall, const WallState& w, const SurfaceTo
 
 TouchFooting find_footing(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const RodTether& t, const TouchLaw& law, const Vec3& x) noexcept {
   TouchFooting f;
-  const double height = (x - wall.position(w, touch.at)).dot(touch.normal) - law.radius;
+  const double height = (x - wall.on_triangle(w, touch.at)).dot(touch.normal) - law.radius;
   const Vec3 rub = t.force - t.force.dot(touch.normal) * touch.normal, q = x + rub / law.stiffness;  // the bristle stays bent by what friction bears: what sticks does not creep
   f.near = wall.nearest(w, q, kAlong + law.radius);
-  f.normal = f.near.fraction > kOnSurface && law.radius > 0.0 && f.near.found ? Vec3((q - wall.position(w, f.near.point)).normalized()) : f.near.normal;
+  f.normal = f.near.away;
   f.slides = f.near.found && f.normal.dot(touch.normal) > 0.3 && height > -kShallow;  // deep within, the far wall may be nearest
   f.off = height >= 0.0 && !(f.slides && f.near.fraction < law.radius);
   f.depth = f.slides ? law.radius - f.near.fraction : -height;

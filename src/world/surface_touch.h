@@ -4,7 +4,7 @@
 //
 // The place is remembered, so that a strand cannot come out on the far side, however fast it goes. It follows what slides only: it is where x + f/k is nearest to the
 // surface, f the friction borne by bristles of stiffness k (return mapping), so that what sticks does not creep. A touch ends when the strand is above its place.
-// Tests: vessel_contact_test, wire_contact_test.
+// Tests: surface_touch_test, vessel_contact_test, wire_contact_test.
 
 #include "physics/needle_track.h"
 #include "world/vessel_state.h"
@@ -25,7 +25,7 @@ struct TouchFooting {
   bool off = false;            // it is free again, and the touch has ended
   bool slides = false;         // to `near`
   WallCrossing near;
-  Vec3 normal;                 // there; at a rim not that of either face
+  Vec3 normal;                 // there: `away`, the gradient of the distance
 };
 TouchFooting find_footing(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const RodTether& t, const TouchLaw& law, const Vec3& x) noexcept;
 /// What a strand that the wall can push aside does to it in its coming step. A thread is no post: a wall that comes on at 5 mm/s would be dented by one of 200 N/m,

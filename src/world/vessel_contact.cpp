@@ -179,10 +179,8 @@ void VesselContact::press(VesselWall& wall, const WallState& w, const std::vecto
         const int n = wall.around(w, q, radius + kAhead, places.data(), static_cast<int>(places.size()));
         for (int k = 0; k < n && static_cast<std::size_t>(n_pushes_) < pushes_.size(); ++k) {
           const WallCrossing& near = places[static_cast<std::size_t>(k)];
-          const Vec3 way = q - wall.position(w, near.point);  // at a rim or a ridge not the normal of either face
-          const Vec3 normal = near.fraction > 1e-9 ? Vec3(way / near.fraction) : near.normal;
           const Vec3 lever = q - states[i].X_WT.p, carried = wall.options().dt * (states[i].v + states[i].w.cross(lever));
-          const int number = wall.add_push(w, near.point, normal, radius - near.fraction, law.stiffness, jaw_friction, carried);
+          const int number = wall.add_push(w, near.point, near.away, radius - near.fraction, law.stiffness, jaw_friction, carried);
           pushes_[static_cast<std::size_t>(n_pushes_++)] = {number, static_cast<int>(i), lever};
         }
       }

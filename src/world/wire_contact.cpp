@@ -106,7 +106,7 @@ void WireContact::press(VesselWall& wall, const WallState& w, const SurfaceTouch
   const int n = wall.around(w, x, law.radius + kAhead, places.data(), static_cast<int>(places.size()));
   for (int k = 0; k < n; ++k) {
     const WallCrossing& c = places[static_cast<std::size_t>(k)];
-    against(c.point, c.fraction > 1e-9 ? Vec3((x - wall.position(w, c.point)).normalized()) : c.normal, law.radius - c.fraction);
+    against(c.point, c.away, law.radius - c.fraction);
   }
 }
 

@@ -48,6 +48,30 @@ TEST(VesselWallSurface, TheCutEdgeIsItsOwn) {
   EXPECT_NEAR(c.normal.z(), 1.0, 1e-9);
 }
 
+/// What crosses the surface, what is nearest to it and where a place on it lies agree on twisted sides too, which the element's own interpolation does not meet.
+TEST(VesselWallSurface, PlacesLieWhereTheyAreFoundOnTwistedSides) {
+  VesselWall wall = plain();
+  WallState s = wall.first_state();
+  for (int i = 0; i < wall.mesh().n_nodes(); ++i) s.x.col(i) += 10e-6 * Vec3(std::sin(7.0 * i), std::cos(11.0 * i), std::sin(5.0 * i + 1.0));
+  wall.refit(s);
+  double beside = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    const double angle = 0.31 * k, radius = 0.45e-3 + 20e-6 * std::sin(3.0 * k);
+    const Vec3 q(radius * std::cos(angle), radius * std::sin(angle), 0.3e-3 + 12e-6 * k);
+    const WallCrossing near = wall.nearest(s, q, 1e-4);
+    ASSERT_TRUE(near.found);
+    EXPECT_NEAR(near.away.norm(), 1.0, 1e-9);
+    EXPECT_NEAR((wall.on_triangle(s, near.point) + near.fraction * near.away - q).norm(), 0.0, 1e-12);
+    EXPECT_GT(near.away.dot(near.normal), 0.0);
+    beside = std::max(beside, (wall.position(s, near.point) - wall.on_triangle(s, near.point)).norm());
+    const Vec3 a = 1.3 * q - 0.3 * Vec3(0, 0, q.z()), b(0, 0, q.z());
+    const WallCrossing c = wall.crossing(s, a, b);
+    ASSERT_TRUE(c.found);
+    EXPECT_NEAR((wall.on_triangle(s, c.point) - a - c.fraction * (b - a)).norm(), 0.0, 1e-12);
+  }
+  EXPECT_GT(beside, 2e-6);
+}
+
 TEST(VesselWallSurface, NearestTellsInsideFromOutside) {
   VesselWall wall = plain();
   const WallState s = wall.first_state();

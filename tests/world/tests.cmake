@@ -2,6 +2,7 @@ foreach(name blade_arm blood_flow brain_scene brain_section clamp_bars cortex fa
   filum_test(world/${name})
 endforeach()
 filum_test(world/needle_scene)
+filum_test(world/surface_touch)
 filum_test(world/vessel_contact)
 filum_test(world/wire_contact)
 filum_test(world/vessel_scene)

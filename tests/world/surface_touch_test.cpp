@@ -1,0 +1,79 @@
+#include "world/surface_touch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace filum {
+namespace surface_touch_test {
+
+constexpr double kFold = 0.1;       // [-], slope of both sides of the valley, along x, whose bottom is the line x = 0 on top of a card
+constexpr double kDepth = 1e-6;     // [m], of the strand below the bottom
+constexpr double kPress = 0.2e-3;   // [N]
+
+struct Valley {
+  VesselWall wall;
+  WallState w;
+
+  Valley() : wall(card(), {{"wall", 0.15e-3, WallLaw::hooke(300e3, 0.45)}}, {}), w(wall.first_state()) {
+    for (int i = 0; i < wall.mesh().n_nodes(); ++i) w.x(2, i) += kFold * std::abs(w.x(0, i));
+    wall.refit(w);
+  }
+  static VesselMesh card() {
+    CardShape shape;
+    shape.width = 4e-3;
+    shape.depth = 4e-3;
+    shape.across = 4;
+    shape.deep = 4;
+    return make_card(shape);
+  }
+  /// `beside` [m] the bottom, half way along it.
+  Vec3 below(double beside, double along = 0.0) const { return {beside, -2e-3 + along, 0.075e-3 - kDepth}; }
+};
+
+/// A wedge of places below the bottom of a valley has its nearest point on the bottom itself: the normal there turns from one side's to the other's.
+TEST(SurfaceTouch, InAFoldTheNormalIsTheDistancesGradient) {
+  const Valley v;
+  SurfaceTouch touch;
+  touch.at = v.wall.nearest(v.w, v.below(0.0), 1e-4).point;
+  TouchLaw law;
+  for (const double share : {-0.9, -0.5, 0.3, 0.8}) {
+    const double beside = share * kFold * kDepth;  // the wedge is kFold * depth wide either way
+    const TouchFooting f = find_footing(v.wall, v.w, touch, RodTether(), law, v.below(beside));
+    ASSERT_TRUE(f.slides);
+    EXPECT_NEAR(f.normal.x(), -beside / std::hypot(beside, kDepth), 1e-6);
+    EXPECT_NEAR(f.normal.y(), 0.0, 1e-6);
+    EXPECT_NEAR(f.depth, std::hypot(beside, kDepth), 1e-12);
+  }
+  const TouchFooting side = find_footing(v.wall, v.w, touch, RodTether(), law, v.below(0.05e-3) + Vec3(0, 0, kFold * 0.05e-3));
+  EXPECT_NEAR(side.normal.x(), -kFold / std::hypot(1.0, kFold), 1e-9);  // that of the face
+}
+
+/// What is drawn along a valley is held back along it, and by nothing else: friction turns against the way within some lengths of a bristle.
+TEST(SurfaceTouch, FrictionInAFoldTurnsAgainstTheWay) {
+  const Valley v;
+  TouchLaw law;
+  law.friction = 0.3;
+  law.stiffness = kPress / kDepth;
+  SurfaceTouch touch;
+  touch.at = v.wall.nearest(v.w, v.below(0.0), 1e-4).point;
+  touch.load = kPress;
+  const double bristle = law.friction * kPress / law.stiffness;
+  Vec3 x = v.below(bristle);  // it bears all that it can, across the valley
+  for (int step = 0; step < 200; ++step) {
+    x.y() += 0.1 * bristle;
+    RodTether t = hold_touch(v.wall, v.w, touch, law, x);
+    const Vec3 d = x - t.anchor, slip = d.dot(t.along) * t.along + d.dot(t.across) * t.across;
+    t.force = -t.stiffness * d - slip * std::min(t.stick, t.limit / slip.norm());
+    if (step == 199) {
+      const Vec3 n = t.along.cross(t.across), rub = t.force - t.force.dot(n) * n;
+      EXPECT_NEAR(rub.norm(), law.friction * kPress, 1e-9);
+      EXPECT_LT(-rub.y() / rub.norm(), 1.0 + 1e-12);
+      EXPECT_GT(-rub.y() / rub.norm(), 0.99);
+    }
+    slide_touch(touch, find_footing(v.wall, v.w, touch, t, law, x));
+  }
+}
+
+}  // namespace surface_touch_test
+}  // namespace filum
