@@ -54,7 +54,7 @@ Vec3 VesselWall::on_triangle(const WallState& state, const WallPoint& at) const 
     const Vec3 from = corner_local(side[0]), way = corner_local(side[c]) - from;
     return (at.local - from).dot(way) / way.squaredNorm();
   };
-  const double u = share(1), v = share(3);
+  const double u = share(1), v = share(3);  // a side is cut from corner 0 to 2, see face_triangles()
   return u >= v ? Vec3((1.0 - u) * corner(0) + (u - v) * corner(1) + v * corner(2)) : Vec3((1.0 - v) * corner(0) + u * corner(2) + (v - u) * corner(3));
 }
 

@@ -227,7 +227,7 @@ def race(tries, run, most, log):
 
 
 def bite_choices(random_, k):
-    """The first stitch lies some 14 degrees beside the middle, where the needle has pushed the vessel round: so does the second one then."""
+    """The first stitch lies some 14 degrees beside the middle: so does the second one then, to be across from it."""
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name in BITES}
     usual = ((0, -.36), (.12, .06), .2), ((0, -.36), (.1, -.05), .2), ((0, -.36), (.2, .04), .2), ((.03, -.42), (.12, .06), .2), ((0, -.36), (.3, .1), .2), ((0, -.3), (.12, .06), .2)
     between = ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
