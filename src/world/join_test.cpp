@@ -16,6 +16,7 @@ namespace filum {
 namespace {
 
 constexpr double kFree = 0.5e-3;  // [m], of thread beside a bite that may lie in the lumen
+constexpr int kThreadIterations = 100;  // Newton, at most in a step; 20 in a live one leave 0.3 mN now and then
 
 /// Is q in the tube through these rings?
 bool within(const std::vector<LumenRing>& rings, const Vec3& q) {
@@ -147,11 +148,12 @@ double flow_onwards(const VesselModel& vessel, const Points& x, const std::vecto
   return balance_join(line, gaps, vessel.circulation, blood).on;
 }
 
-/// The scene with a wall that is balanced to its tolerance in every step: what is measured is a rest, and there is no hurry.
+/// The scene with a wall and a thread that are balanced to their tolerance in every step: what is measured is a rest, and there is no hurry.
 std::shared_ptr<const Model> balanced(const Model& model) {
   auto m = std::make_shared<Model>(model);
   auto vessel = std::make_shared<VesselModel>(*model.vessel);
   vessel->wall.strict_iterations = WallOptions().strict_iterations;
+  m->step.max_iterations = std::max(m->step.max_iterations, kThreadIterations);
   m->vessel = vessel;
   return m;
 }

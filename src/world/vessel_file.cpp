@@ -211,8 +211,6 @@ void read_tissue(const std::string& root, const YamlNode& node, const std::strin
     read_flaps(node, *v);
   else
     read_stumps(root, node, vessel_file, m, *v);
-  v->wire_touches = node.flag_or("wire_touches", true);
-  v->clamp_touches = node.flag_or("clamp_touches", true);
   const std::string file = "models/track/" + node.text("track") + ".yaml";
   m.sources.push_back(file);
   v->track = load_track(root + "/" + file);

@@ -19,8 +19,6 @@ struct VesselModel {
   WallOptions wall;
   TrackMaterial track;
   double thickness = 0.0;             // [m]
-  bool wire_touches = true;           // the needle's wire, away from its holes; false: scenes whose demonstrations were sewn before it did
-  bool clamp_touches = true;          // thread, needle and instruments touch the double clamp; false: scenes whose demonstrations were made before they did
   bool adventitia = false;            // its outermost layer is one: tips can take a fold of it
   Vec3 cut_along = Vec3::UnitX();     // unit, direction of the cut at rest; of a vessel: where its angle is zero (end to side: at the heel)
   bool lumen = false;                 // two vessels in a double clamp

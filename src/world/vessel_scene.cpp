@@ -57,7 +57,7 @@ std::uint64_t hash_blood(const BloodState& b, std::uint64_t h) noexcept {
 }  // namespace
 
 VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity)
-    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), wire_(needle, model.wire_touches) {
+    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), wire_(needle) {
   if (model.lumen) blood_ = std::make_unique<BloodFlow>(model_);
 }
 

@@ -14,9 +14,9 @@ constexpr double kFades = 0.2e-3;     // [m], beyond kTrackReach, over which a t
 
 }  // namespace
 
-WireContact::WireContact(const NeedleShape& needle, bool touches) : law{200.0, 0.15, needle.wire_radius}, needle_(needle) {
+WireContact::WireContact(const NeedleShape& needle) : law{200.0, 0.15, needle.wire_radius}, needle_(needle) {
   const double wire = std::max(0.0, needle.length() - kAtPoint);
-  n_ = touches ? std::min(kMostWireSamples, 1 + static_cast<int>(std::ceil(wire / kSpacing))) : 0;
+  n_ = std::min(kMostWireSamples, 1 + static_cast<int>(std::ceil(wire / kSpacing)));
   spacing_ = n_ > 1 ? wire / (n_ - 1) : kSpacing;
 }
 

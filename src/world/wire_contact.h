@@ -20,8 +20,7 @@ inline constexpr int kMostWireSamples = 96;
 
 class WireContact {
  public:
-  /// `touches`: false for a wire that goes through walls.
-  WireContact(const NeedleShape& needle, bool touches);
+  explicit WireContact(const NeedleShape& needle);
 
   TouchLaw law;  // steel on wet tissue
 

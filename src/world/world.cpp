@@ -114,7 +114,7 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
   state.force.assign(n_tools, Vec3::Zero());
   state.torque.assign(n_tools, Vec3::Zero());
   add_fixtures(*model, rod.obstacles);
-  if (model->vessel && model->vessel->lumen && model->vessel->clamp_touches) {
+  if (model->vessel && model->vessel->lumen) {
     clamp = std::make_unique<ClampBars>(*model->vessel);
     clamp->add(state.tissue.clamp, model->jaw_friction, rod.obstacles);
     still = surroundings(*model).bars;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,21 @@ TEST(JoinTest, SameStateSameLeak) {
   const JoinTestReport a = join_test(*stumps(), w.state()), b = join_test(*stumps(), w.state());
   EXPECT_EQ(a.leak, b.leak);
   EXPECT_EQ(a.flow, b.flow);
+}
+
+/// What is measured is a rest: a thread that a live step would leave unbalanced is balanced here.
+TEST(JoinTest, ALiveStepsLimitOfIterationsDoesNotCount) {
+  auto hurried = std::make_shared<Model>(*stumps());
+  hurried->step.max_iterations = 1;
+  World w(hurried);
+  State s = w.state();
+  for (int i = 20; i < 30; ++i) s.thread.x(2, i) += 200e-6 * (i % 2);  // kinks
+  w.restore(s);
+  w.step(Inputs{});
+  int troubles = 0;
+  for (int e = 0; e < w.observation().n_events; ++e) troubles += std::string_view(w.observation().events[static_cast<std::size_t>(e)].name) == "solver-trouble";
+  ASSERT_GT(troubles, 0) << "one iteration is not enough for the kinks";
+  EXPECT_TRUE(join_test(*hurried, s).sound);
 }
 
 int first_within(const RodState& t, double y) {
