@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <string_view>
+#include <vector>
 
 #include "base/numbers.h"
 #include "base/units.h"
@@ -220,6 +221,22 @@ void judge_join(const NeedleTask& task, Result& r) {
   if (gate.patent && !join.patent) fail("the join is not patent");
 }
 
+/// Knots that were asked for, tied and cut, and do not hold any more at the end.
+long opened(const NeedleTask& task, const NeedleReport& n) {
+  const auto is_cut = [&](const NeedleGoal& tie) {
+    return std::any_of(task.goals.begin(), task.goals.end(), [&](const NeedleGoal& g) { return g.kind == NeedleGoal::Kind::cut && g.passes == tie.passes; });
+  };
+  long asked = 0;
+  std::vector<std::string> classes;
+  for (const NeedleGoal& g : task.goals)
+    if (g.kind == NeedleGoal::Kind::tie && !g.knots.empty() && is_cut(g)) {
+      ++asked;
+      classes.insert(classes.end(), g.knots.begin(), g.knots.end());
+    }
+  const long held = std::count_if(n.stitches.begin(), n.stitches.end(), [&](const Stitch& s) { return std::find(classes.begin(), classes.end(), s.knot) != classes.end(); });
+  return std::max(0L, asked - held);
+}
+
 void judge(const Task& task, bool broken, Result& r) {
   const auto fail = [&r](const auto& reason) { r.verdict.emplace_back(reason); };
   if (task.demonstration_only) fail("a demonstration does not pass");
@@ -227,6 +244,8 @@ void judge(const Task& task, bool broken, Result& r) {
   if (broken) fail("the thread broke");
   if (r.needle && r.needle->out_of_turn > 0) fail(std::to_string(r.needle->out_of_turn) + " stitches were not made in their turn");
   if (r.needle && task.needle) judge_join(*task.needle, r);
+  if (const long open = r.needle && task.needle && r.finished ? opened(*task.needle, *r.needle) : 0; open > 0)
+    fail(std::to_string(open) + (open == 1 ? " knot that was tied does" : " knots that were tied do") + " not hold any more");
   if (task.has_knot() && !accepted(task, r.knot.knot_class))
     fail("the knot is a " + r.knot.knot_class + ", not a " + joined(task.accept));
   if (r.knot.knot_class != "unknot" && !r.knot.encloses_post) fail("the knot does not enclose the post");

@@ -57,5 +57,18 @@ TEST(Score, AnAnastomosisNeedsAJoinThatHoldsAndLetsThrough) {
   EXPECT_TRUE(says(verdict_of([](NeedleReport& n) { n.lapses.push_back({"back-wall", 2, 1.0, 170.0, "deg", true}); }), "stitch 3: back-wall, a critical failure"));
 }
 
+TEST(Score, KnotsThatWereTiedMustHoldAtTheEnd) {
+  const auto tied = [](int n) {
+    return verdict_of([n](NeedleReport& report) {
+      report.stitches.resize(8);
+      for (int k = 0; k < n; ++k) report.stitches[static_cast<std::size_t>(k)].knot = "square";
+      if (n < 8) report.stitches.back().knot = "overhand";
+    });
+  };
+  EXPECT_EQ(tied(8).find("hold"), std::string::npos) << tied(8);
+  EXPECT_NE(tied(7).find("1 knot that was tied does not hold any more"), std::string::npos) << tied(7);
+  EXPECT_NE(tied(6).find("2 knots that were tied do not hold any more"), std::string::npos) << tied(6);
+}
+
 }  // namespace score_test
 }  // namespace filum
