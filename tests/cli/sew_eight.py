@@ -20,10 +20,10 @@ HINTS = json.load(open(os.environ['HINTS']))['stitches'] if 'HINTS' in os.enviro
 BITES = ('aside', 'enter', 'leave', 'press', 'take')      # what is chosen before the knot
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
 FIRM = 0.55                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
-WIDE, INNER = 0.5, 0.1                                    # [mm], most of an outer bite, least of an inner one
+WIDE, INNER = 0.58, 0.1                                   # [mm], most of an outer bite, least of an inner one
 LOOP = 3.2                                                # [mm], most of a knot's loop
 OPENED = 'an earlier knot opened'
-PLACE = 18.0                                              # [degrees], most by which a stitch is beside its place
+PLACE = 21.0                                              # [degrees], most by which a stitch is beside its place
 
 
 def of_scene(field): return re.search(r'^%s: (.*)' % field, open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read(), re.M).group(1)
@@ -34,9 +34,9 @@ SLIDES = {8: (.7, .6, .8), 6: (.55, .5, .6)}.get(STITCHES, (.8, .9, 1.0))   # [s
 
 # Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave:
 # of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
-# the cuts, and open again; let_go: where the short end is let go; first, firm [mN]: pulls at which the first and the second throw are drawn down
+# the cuts, and open again; short: where the short end is cut, from its free end, where the strand crosses itself before its knot (0: `cut` from the knot); let_go: where the short end is let go; first, firm [mN]: pulls at which the first and the second throw are drawn down
 # (with 8 a knot may spring open stitches later)
-DEFAULT = dict(aside=0, enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, slide=SLIDES[0], last=0.18, open=1.2, let_go=(0, -.25, -.4), first=10, firm=30)
+DEFAULT = dict(aside=0, enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, short=0, slide=SLIDES[0], last=0.18, open=1.2, let_go=(0, -.25, -.4), first=10, firm=30)
 
 
 def numbers(text): return [float(x) for x in re.findall(r'-?\d+\.?\d*', text)]
@@ -120,7 +120,9 @@ def forceps(keys, p, relative):
 def scissors(keys, p, last_stitch):
     keys = [k for k in keys if k['t'] < 86]
     for key in keys:
-        if key['at'] and 'knot' in key['at']: key['at'] = '{ knot: "%.2f mm", from: %s }' % (p['cut'], 'end' if 'end' in key['at'] else 'swage')
+        if key['at'] and 'knot' in key['at']:
+            at_end = 'end' in key['at']
+            key['at'] = '{ thread: "%.2f mm", from: end }' % p['short'] if at_end and p['short'] else '{ knot: "%.2f mm", from: %s }' % (p['cut'], 'end' if at_end else 'swage')
     keys += [button(72.002, 'cut'), button(72.02), button(72.042, 'cut', 'Edges together, gently'), button(72.06 + p['last'])]
     if last_stitch: return keys + [button(86.193), button(90.0)]
     return keys + [button(86.193, 'fresh', 'Ask for a fresh suture, and turn the clamp until the next place lies on top'), button(86.293), button(86.393, 'next'), button(86.493),
@@ -231,17 +233,18 @@ def bite_choices(random_, k):
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name in BITES}
     usual = ((0, -.36), (.12, .06), .2), ((0, -.36), (.1, -.05), .2), ((0, -.36), (.2, .04), .2), ((.03, -.42), (.12, .06), .2), ((0, -.36), (.3, .1), .2), ((0, -.3), (.12, .06), .2)
     between = ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
-    for enter, leave, press in between + usual if k > 3 else usual:
-        for aside in (.1, 0, .15) if k < 3 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
+    rolled = ((-.1, -.36), (.2, .04), .2), ((-.06, -.36), (.2, .04), .2)  # an edge that its neighbours have rolled inwards is met farther from it
+    for enter, leave, press in rolled + between + usual if k > 5 else between + usual if k > 3 else usual:
+        for aside in (.1, 0, .15) if k < 3 else (.05, .07, .1) if k > 5 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
         yield dict(aside=random_.choice((0, .05, -.05, .1, -.1, .2, -.2)), enter=(near(-.05, .09), near(-.45, -.2)), leave=(near(.06, .3) if k < 4 else near(.1, .5), near(-.1, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
 
 
 def knot_choices(random_, k):
-    """Before the ends of the last stitch are cut, the clamp may come nearer: it stays there when blood is let in."""
+    """Before the ends of the last stitch are cut, the clamp comes as near as before each; farther (0.6 s) it tears what is sewn."""
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name not in BITES}
-    lasts = (.6, .4, .8) if k + 1 == STITCHES else (.18,)
+    lasts = (.18, .3) if k + 1 == STITCHES else (.18,)
     yield from (dict(slide=slide, let_go=(0, -.3, -.45), first=first, firm=firm, cut=1.5, last=last) for last in lasts for slide in SLIDES
                 for first, firm in ((10, 30), (9, 30)))
     while True:
