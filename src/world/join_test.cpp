@@ -16,7 +16,7 @@ namespace filum {
 namespace {
 
 constexpr double kFree = 0.5e-3;  // [m], of thread beside a bite that may lie in the lumen
-constexpr int kThreadIterations = 100;  // Newton, at most in a step; 20 in a live one leave 0.3 mN now and then
+constexpr int kThreadIterations = 100;  // Newton, at most in a step; with a live step's 20 one of 200 steps left 0.3 mN
 
 /// Is q in the tube through these rings?
 bool within(const std::vector<LumenRing>& rings, const Vec3& q) {

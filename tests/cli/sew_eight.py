@@ -34,7 +34,7 @@ SLIDES = {8: (.7, .6, .8), 6: (.55, .5, .6)}.get(STITCHES, (.8, .9, 1.0))   # [s
 
 # Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave:
 # of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
-# the cuts, and open again; short: where the short end is cut, from its free end, where the strand crosses itself before its knot (0: `cut` from the knot); let_go: where the short end is let go; first, firm [mN]: pulls at which the first and the second throw are drawn down
+# the cuts, and open again; short: where the short end is cut, from its free end, for a strand that is not found from its knot (0: `cut` from the knot); let_go: where the short end is let go; first, firm [mN]: pulls at which the first and the second throw are drawn down
 # (with 8 a knot may spring open stitches later)
 DEFAULT = dict(aside=0, enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut=1.0, short=0, slide=SLIDES[0], last=0.18, open=1.2, let_go=(0, -.25, -.4), first=10, firm=30)
 
@@ -233,7 +233,7 @@ def bite_choices(random_, k):
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name in BITES}
     usual = ((0, -.36), (.12, .06), .2), ((0, -.36), (.1, -.05), .2), ((0, -.36), (.2, .04), .2), ((.03, -.42), (.12, .06), .2), ((0, -.36), (.3, .1), .2), ((0, -.3), (.12, .06), .2)
     between = ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
-    rolled = ((-.1, -.36), (.2, .04), .2), ((-.06, -.36), (.2, .04), .2)  # an edge that its neighbours have rolled inwards is met farther from it
+    rolled = ((-.1, -.36), (.2, .04), .2), ((-.06, -.36), (.2, .04), .2)  # an edge that went under between tight neighbours is met farther from it
     for enter, leave, press in rolled + between + usual if k > 5 else between + usual if k > 3 else usual:
         for aside in (.1, 0, .15) if k < 3 else (.05, .07, .1) if k > 5 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
@@ -242,7 +242,7 @@ def bite_choices(random_, k):
 
 
 def knot_choices(random_, k):
-    """Before the ends of the last stitch are cut, the clamp comes as near as before each; farther (0.6 s) it tears what is sewn."""
+    """Before the ends of the last stitch are cut, the clamp comes as near as before each."""
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name not in BITES}
     lasts = (.18, .3) if k + 1 == STITCHES else (.18,)
     yield from (dict(slide=slide, let_go=(0, -.3, -.45), first=first, firm=firm, cut=1.5, last=last) for last in lasts for slide in SLIDES

@@ -69,6 +69,20 @@ export function eventWords(event: { name: string; value: number; text?: string }
   return event.name === "goal-done" ? `Step ${event.value} done` : words(event.name);
 }
 
+/// Events as they are listed: what comes with every step is left out, reports of an imprecise step that follow each other are one, with their number and the largest value.
+export function listed<E extends { name: string; time: number; value: number; text?: string }>(events: readonly E[]): E[] {
+  const list: E[] = [];
+  let run = 0;
+  for (const event of events) {
+    if (kFrequent.includes(event.name)) continue;
+    const last = list[list.length - 1];
+    run = event.name === "solver-trouble" && last?.name === event.name ? run + 1 : 1;
+    if (run === 1) list.push(event);
+    else list[list.length - 1] = { ...last, value: Math.max(last.value, event.value), text: `The simulation was imprecise ${run} times until ${event.time.toFixed(1)} s, at most by` };
+  }
+  return list;
+}
+
 export const kKnotTitles: Record<string, string> = {
   square: "Square knot", granny: "Granny knot", surgeons: "Surgeon's knot", triple: "Triple knot (1=1=1)", overhand: "Overhand knot",
   "half-hitches": "Half hitches (slipped)", unknot: "No knot", other: "Another knot",

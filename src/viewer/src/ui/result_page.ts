@@ -4,7 +4,7 @@ import type { Result, ServerMessage } from "../messages";
 import { session as fetchSession } from "../net/api";
 import { analysisPanel } from "./analysis_panel";
 import { h } from "./dom";
-import { clock, kFrequent, kKnotTitles, kLaboratory, milliNewton, quantity, words, eventWords } from "./format";
+import { clock, listed, kKnotTitles, kLaboratory, milliNewton, quantity, words, eventWords } from "./format";
 import { PathPlot } from "./path_plot";
 import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
@@ -107,7 +107,7 @@ export class ResultPage implements Page {
   }
 
   private eventCard(result: Result, id: string | null): HTMLElement {
-    const rows = result.events.filter((event) => !kFrequent.includes(event.name)).map((event) => h("li", {},
+    const rows = listed(result.events).map((event) => h("li", {},
       id ? h("a", { href: `#/replay/${encodeURIComponent(id)}/${event.time.toFixed(2)}`, title: "Show in the replay" }, `${event.time.toFixed(1)} s`) : h("span", { class: "when" }, `${event.time.toFixed(1)} s`),
       h("span", {}, eventWords(event)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit))));
     return h("section", { class: "panel eventlist" }, h("h2", {}, "What happened"), rows.length > 0 ? h("ul", { class: "events" }, ...rows) : h("p", { class: "quiet" }, "Nothing was noted."));
