@@ -71,24 +71,40 @@ int run_one(const ReconcileOptions& o, const Streams& io) {
   return kDone;
 }
 
-/// Number of this process and of all, as mpirun or srun say in the environment; 0 of 1 without them.
-std::pair<std::size_t, std::size_t> rank_and_size() {
-  for (const auto& [rank, size] : {std::pair{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"}, std::pair{"PMI_RANK", "PMI_SIZE"}, std::pair{"SLURM_PROCID", "SLURM_NTASKS"}}) {
-    const char *r = std::getenv(rank), *n = std::getenv(size);
-    if (r != nullptr && n != nullptr && std::atoi(n) > 1) return {static_cast<std::size_t>(std::atoi(r)), static_cast<std::size_t>(std::atoi(n))};
+/// One of several processes of one start: its number, how many they are, and whether who started them also started MPI's own exchange.
+struct Share {
+  std::size_t rank = 0, size = 1;
+  bool mpi = false;
+};
+
+/// As mpirun or srun say in the environment; 0 of 1 without them.
+Share share_of_start() {
+  const bool pmix = std::getenv("PMIX_NAMESPACE") != nullptr;
+  struct Names {
+    const char *rank, *size;
+    bool mpi;
+  };
+  for (const Names& names : {Names{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", true}, Names{"PMI_RANK", "PMI_SIZE", true}, Names{"SLURM_PROCID", "SLURM_NTASKS", pmix}}) {
+    const char *r = std::getenv(names.rank), *n = std::getenv(names.size);
+    if (r != nullptr && n != nullptr && std::atoi(n) > 1) return {static_cast<std::size_t>(std::atoi(r)), static_cast<std::size_t>(std::atoi(n)), names.mpi};
   }
-  return {0, 1};
+  return {};
 }
 
-/// MPI where mpirun started several processes and the module is there; else nothing, and the environment's numbers must do.
-std::unique_ptr<Ranks> start_ranks(const Streams& io) {
-  if (rank_and_size().second == 1) return nullptr;
+/// MPI where several processes were started with it and the module is there; else nothing, and the environment's numbers must do. It is not
+/// asked where nobody started it: processes that each start a world of their own at the same moment may abort (OpenMPI's folder in /tmp).
+std::unique_ptr<Ranks> start_ranks(const Share& share, const Streams& io) {
+  if (share.size == 1) return nullptr;
+  if (!share.mpi) {
+    std::fprintf(io.err, "without MPI, which was not started: each of %zu processes takes its share by number\n", share.size);
+    return nullptr;
+  }
   std::string why;
   const auto start = reinterpret_cast<StartRanks>(reconcile::module_function("filum_ranks", kStartRanks, &why));
   if (start == nullptr && !why.empty()) std::fprintf(io.err, "without MPI: %s\n", why.c_str());
   std::unique_ptr<Ranks> ranks(start == nullptr ? nullptr : start());
-  if (ranks != nullptr && static_cast<std::size_t>(ranks->size()) != rank_and_size().second) {  // srun without the library's own start: each sees itself alone
-    std::fprintf(io.err, "without MPI: it sees %d of %zu processes; each takes its share by number\n", ranks->size(), rank_and_size().second);
+  if (ranks != nullptr && static_cast<std::size_t>(ranks->size()) != share.size) {  // another MPI than the module's: each sees itself alone
+    std::fprintf(io.err, "without MPI: it sees %d of %zu processes; each takes its share by number\n", ranks->size(), share.size);
     ranks.reset();
   }
   return ranks;
@@ -117,18 +133,18 @@ std::vector<std::string> lines_of(const std::string& text) {
 /// from one list as they get free; with the environment's numbers alone every process takes each n-th of all.
 int run_all(const ReconcileOptions& o, const Streams& io) {
   if (!is_folder(o.all)) throw InputError("--all", "folder", o.all, "a folder of datasets");
-  const std::unique_ptr<Ranks> ranks = start_ranks(io);
-  const auto [rank, size] = rank_and_size();
+  const Share share = share_of_start();
+  const std::unique_ptr<Ranks> ranks = start_ranks(share, io);
   ReconcileOptions every = o;
   every.again = true;
-  const bool by_number = ranks == nullptr && size > 1;
+  const bool by_number = ranks == nullptr && share.size > 1;
   // without a common list processes that start late would see fewer names: then all are counted, and finished ones passed over
   const std::vector<std::string> names = lines_of(ranks != nullptr ? ranks->from_first(unfinished(o)) : unfinished(by_number ? every : o));
-  std::atomic<long> own = static_cast<long>(rank);
-  const auto next = [&, stride = static_cast<long>(size)] { return ranks != nullptr ? ranks->next() : own.fetch_add(stride); };
+  std::atomic<long> own = static_cast<long>(share.rank);
+  const auto next = [&, stride = static_cast<long>(share.size)] { return ranks != nullptr ? ranks->next() : own.fetch_add(stride); };
   std::mutex guard;
   std::atomic<long> bad = 0, done = 0;
-  const int threads = o.threads > 0 ? o.threads : size > 1 ? 1 : 2;
+  const int threads = o.threads > 0 ? o.threads : share.size > 1 ? 1 : 2;
   reconcile::parallel(threads, static_cast<std::size_t>(threads), [&](std::size_t) {
     for (long i = next(); i < static_cast<long>(names.size()); i = next()) {
       const std::string& folder = names[static_cast<std::size_t>(i)];

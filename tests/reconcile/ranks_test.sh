@@ -23,7 +23,7 @@ for n in 1 2 4; do
 done
 grep -q "without MPI" "$work"/log-* && fail "the module was not used: $(grep -h 'without MPI' "$work"/log-*)"
 
-# started by srun without MPI's own start each process sees itself alone: they share by number
+# started by srun without MPI: MPI is not asked (worlds of one process that start at the same moment may abort), they share by number
 for n in 0 1; do
   env SLURM_PROCID=$n SLURM_NTASKS=2 "$filum" reconcile --all "$work/data" --out "$work/slurm" --repeatable --root "$root" >"$work/slurm-$n" 2>&1 &
 done
