@@ -54,7 +54,7 @@ nlohmann::ordered_json json_of(const BenchResult& r) {
   Json stages = Json::object(), slow = Json::object();
   for (const auto& [name, ms] : r.stages) stages[name] = ms;
   for (const auto& [name, ms] : r.slow_stages) slow[name] = ms;
-  return {{"name", r.name},
+  Json json = {{"name", r.name},
           {"nodes", r.nodes},
           {"contacts", r.contacts},
           {"dt_ms", r.dt_ms},
@@ -67,6 +67,9 @@ nlohmann::ordered_json json_of(const BenchResult& r) {
           {"stages", stages},
           {"stages_of_slowest_hundredth", slow},
           {"reference", {{"name", r.reference_name}, {"p50_ms", r.reference_p50_ms}}}};
+  const Undisturbed& u = r.undisturbed;
+  if (u.passes > 0) json["undisturbed"] = {{"passes", u.passes}, {"p50_ms", u.p50_ms}, {"p99_ms", u.p99_ms}, {"max_ms", u.max_ms}};
+  return json;
 }
 
 void print_line(const BenchResult& r, const Streams& io) {
@@ -75,6 +78,8 @@ void print_line(const BenchResult& r, const Streams& io) {
               r.reference_p50_ms, r.p50_ms / r.reference_p50_ms);
   if (r.processor_mean_ms > 0.0)
     std::fprintf(io.out, "    processor time: p50 %.3f, p99 %.3f, mean %.3f ms\n", r.processor_p50_ms, r.processor_p99_ms, r.processor_mean_ms);
+  if (const Undisturbed& u = r.undisturbed; u.passes > 0)
+    std::fprintf(io.out, "    undisturbed (each step's least time of %d passes): p50 %.3f, p99 %.3f, max %.3f ms\n", u.passes, u.p50_ms, u.p99_ms, u.max_ms);
   for (const auto& [name, ms] : r.stages) std::fprintf(io.out, "    %-40s %9.4f\n", name.c_str(), ms);
   for (const auto& [name, ms] : r.slow_stages) std::fprintf(io.out, "    in the slowest hundredth: %-24s %9.4f\n", name.c_str(), ms);
   std::fflush(io.out);

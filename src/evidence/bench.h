@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "evidence/undisturbed.h"
 #include "world/inputs.h"
 #include "world/world.h"
 
@@ -20,6 +21,8 @@ struct BenchResult {
   int steps = 0;
   double p50_ms = 0.0, p99_ms = 0.0, max_ms = 0.0;
   double real_time_factor = 0.0;                       // scene time over time spent in steps
+  std::vector<double> step_ms;                         // of every step
+  Undisturbed undisturbed;                             // taken of the steps that sew
   double processor_p50_ms = 0.0, processor_p99_ms = 0.0, processor_mean_ms = 0.0;  // of the step's thread alone; 0 where not taken
   std::vector<std::pair<std::string, double>> stages;  // p50 [ms] of each part of the step
   std::vector<std::pair<std::string, double>> slow_stages;  // mean [ms] of each part over the slowest hundredth of the steps

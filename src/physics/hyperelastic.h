@@ -131,10 +131,10 @@ S stiffening_energy(const LawConstants& c, const S& e, S& slope) noexcept {
 
 /// Psi of the tone at I - 1 = e and dPsi/dI, and where wanted d2Psi/dI2.
 double tone_energy(const LawConstants& c, double e, double& slope, double* bend = nullptr) noexcept;
-template <class N>
-Lanes<N> tone_energy(const LawConstants& c, const Lanes<N>& e, Lanes<N>& slope) noexcept {
-  Lanes<N> energy;
-  for (int k = 0; k < Lanes<N>::kWidth; ++k) {
+template <class N, int bytes>
+Lanes<N, bytes> tone_energy(const LawConstants& c, const Lanes<N, bytes>& e, Lanes<N, bytes>& slope) noexcept {
+  Lanes<N, bytes> energy;
+  for (int k = 0; k < Lanes<N, bytes>::kWidth; ++k) {
     double own = 0.0;
     energy.set(k, tone_energy(c, static_cast<double>(e[k]), own));
     slope.set(k, own);

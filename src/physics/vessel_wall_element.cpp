@@ -9,8 +9,17 @@
 
 namespace filum {
 
-WallElements::WallElements(const VesselMesh& mesh, const std::vector<WallLayer>& layers, bool single_precision)
-    : n_nodes_(mesh.n_nodes()), single_precision_(single_precision), layers_(layers), nodes_of_(mesh.elements), rest_(mesh.stress_free) {
+bool has_wide_lanes() noexcept {
+#ifdef FILUM_WIDE_LANES
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512vl");
+#else
+  return false;
+#endif
+}
+
+WallElements::WallElements(const VesselMesh& mesh, const std::vector<WallLayer>& layers, bool single_precision, bool wide)
+    : n_nodes_(mesh.n_nodes()), layers_(layers), nodes_of_(mesh.elements), rest_(mesh.stress_free) {
   for (const WallLayer& l : layers_) constants_.emplace_back(l.law);
   row_of_.assign(nodes_of_.size(), -1);
   volume_.assign(nodes_of_.size(), 0.0);
@@ -19,11 +28,12 @@ WallElements::WallElements(const VesselMesh& mesh, const std::vector<WallLayer>&
     row_of_[e] = static_cast<int>(found - rows_.begin());
     if (found == rows_.end()) add_row(mesh.span[e]);
   }
-  for (std::size_t r = 0; r < rows_.size(); ++r)
-    if (single_precision_)
-      pack_row(static_cast<int>(r), single_);
-    else
-      pack_row(static_cast<int>(r), double_);
+  if (!single_precision)
+    pack_rows(double_);
+  else if (wide)
+    pack_rows(wide_);
+  else
+    pack_rows(single_);
 }
 
 // Gauss points of each layer that reaches into the span: two, or one where it fills less than a sixth of the element.
@@ -72,8 +82,8 @@ WallElements::Scalars WallElements::scalars(const Corners& rest, const Vec3& loc
   return s;
 }
 
-template <class N>
-void WallElements::fill_lane(WallKernel<N>& kernel, typename WallKernel<N>::Pack& pack, int lane, int element, bool real) {
+template <class S>
+void WallElements::fill_lane(WallKernel<S>& kernel, typename WallKernel<S>::Pack& pack, int lane, int element, bool real) {
   const auto e = static_cast<std::size_t>(element);
   const auto l = static_cast<std::size_t>(lane);
   pack.element[l] = real ? element : -1;
@@ -94,14 +104,19 @@ void WallElements::fill_lane(WallKernel<N>& kernel, typename WallKernel<N>::Pack
   pack.volume.set(lane, volume_[e]);
 }
 
-template <class N>
-void WallElements::pack_row(int row, WallKernel<N>& kernel) {
-  constexpr int kWidth = WallKernel<N>::kWidth;
+template <class S>
+void WallElements::pack_rows(WallKernel<S>& kernel) {
+  for (std::size_t r = 0; r < rows_.size(); ++r) pack_row(static_cast<int>(r), kernel);
+}
+
+template <class S>
+void WallElements::pack_row(int row, WallKernel<S>& kernel) {
+  constexpr int kWidth = WallKernel<S>::kWidth;
   std::vector<int> members;
   for (std::size_t e = 0; e < row_of_.size(); ++e)
     if (row_of_[e] == row) members.push_back(static_cast<int>(e));
   for (std::size_t start = 0; start < members.size(); start += kWidth) {
-    typename WallKernel<N>::Pack p;
+    typename WallKernel<S>::Pack p;
     p.row = row;
     p.first_point = kernel.points.size();
     kernel.points.resize(p.first_point + 4 * rows_[static_cast<std::size_t>(row)].stations.size());
@@ -114,10 +129,9 @@ void WallElements::pack_row(int row, WallKernel<N>& kernel) {
 }
 
 double WallElements::add_forces(const Points& x, const std::vector<double>& soundness, Points& force) const noexcept {
-  double energy = 0.0;
-  for (const auto& p : double_.packs) energy += double_.forces(p, rows_[static_cast<std::size_t>(p.row)], constants_, x, soundness, force);
-  for (const auto& p : single_.packs) energy += single_.forces(p, rows_[static_cast<std::size_t>(p.row)], constants_, x, soundness, force);
-  return energy;
+  if (!wide_.packs.empty()) return add_wide_forces(wide_, rows_, constants_, x, soundness, force);
+  if (!single_.packs.empty()) return single_.add_forces(rows_, constants_, x, soundness, force);
+  return double_.add_forces(rows_, constants_, x, soundness, force);
 }
 
 }  // namespace filum

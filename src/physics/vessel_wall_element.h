@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "physics/vessel_mesh.h"
-#include "physics/vessel_wall_kernel.h"
+#include "physics/vessel_wall_wide.h"
 
 namespace filum {
 
@@ -34,7 +34,8 @@ Eigen::Matrix<double, 8, 1> corner_weights(const Vec3& local) noexcept;
 class WallElements {
  public:
   /// `single_precision`: forces come from the kernel in float, at half the cost, with errors of about 1e-7 of the stiffest stress.
-  WallElements(const VesselMesh& mesh, const std::vector<WallLayer>& layers, bool single_precision = false);
+  /// `wide`: sixteen elements at a time instead of eight, for the same bits (has_wide_lanes() must be true).
+  WallElements(const VesselMesh& mesh, const std::vector<WallLayer>& layers, bool single_precision = false, bool wide = has_wide_lanes());
 
   /// Energy [J]; forces -dE/dx [N] are added to `force` (3 x n). `soundness`: share of stiffness left in each element.
   /// An element turned inside out makes the energy infinite. Allocates nothing.
@@ -70,19 +71,21 @@ class WallElements {
   void each_point(std::size_t e, const Corners& corners, const Use& use) const noexcept;
   double mean_pressure(std::size_t e, const Corners& corners) const noexcept;  // [Pa]
   void add_row(const std::array<double, 2>& span);
-  template <class N>
-  void pack_row(int row, WallKernel<N>& kernel);
-  template <class N>
-  void fill_lane(WallKernel<N>& kernel, typename WallKernel<N>::Pack& pack, int lane, int element, bool real);
+  template <class S>
+  void pack_rows(WallKernel<S>& kernel);
+  template <class S>
+  void pack_row(int row, WallKernel<S>& kernel);
+  template <class S>
+  void fill_lane(WallKernel<S>& kernel, typename WallKernel<S>::Pack& pack, int lane, int element, bool real);
   Scalars scalars(const Corners& rest, const Vec3& local, double share, const WallLaw& law) const;
 
   int n_nodes_ = 0;
-  bool single_precision_ = false;
   std::vector<WallLayer> layers_;
   std::vector<LawConstants> constants_;
   std::vector<KernelRow> rows_;
-  WallKernel<double> double_;  // one of the two is empty
-  WallKernel<float> single_;
+  WallKernel<Lanes<double>> double_;  // of the three one has packs
+  WallKernel<Lanes<float>> single_;
+  WideKernel wide_;
   std::vector<int> row_of_;
   std::vector<double> volume_;
   std::vector<std::array<int, 8>> nodes_of_;

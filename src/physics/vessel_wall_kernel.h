@@ -1,8 +1,10 @@
 #pragma once
-// Energy and forces of a pack of wall elements, in the number format N (double: four elements at a time, float: eight). What the
-// lanes share, their stations through the wall and their laws, is in KernelRow; the rest is data of each element.
+// Energy and forces of packs of wall elements, in the number format S (Lanes: four elements at a time in double precision, eight or sixteen in
+// single). What the lanes share, their stations through the wall and their laws, is in KernelRow; the rest is data of each element. Eight and
+// sixteen at a time give the same bits: elements keep their order, and energies are summed by eights.
 // Coordinates are taken relative to the element's first corner before they are rounded to N. Test: vessel_wall_element_test.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -35,10 +37,10 @@ struct VolumeTerm {
 };
 inline constexpr std::array<VolumeTerm, 4> kVolumeTerms = {{{1, 2, 4, 8.0}, {1, 3, 5, 8.0 / 3.0}, {3, 2, 6, 8.0 / 3.0}, {5, 6, 4, 8.0 / 3.0}}};
 
-template <class N>
+template <class S>
 class WallKernel {
  public:
-  using S = Lanes<N>;
+  using N = typename S::Number;
   static constexpr int kWidth = S::kWidth;
   struct Point {
     LawGeometry<S> geometry;
@@ -54,8 +56,9 @@ class WallKernel {
   std::vector<Pack> packs;
   std::vector<Point> points;
 
-  double forces(const Pack& pack, const KernelRow& row, const std::vector<LawConstants>& laws, const Points& x, const std::vector<double>& soundness,
-                Points& force) const noexcept;
+  /// Energy [J] of all packs; forces -dE/dx [N] are added to `force`.
+  double add_forces(const std::vector<KernelRow>& rows, const std::vector<LawConstants>& laws, const Points& x, const std::vector<double>& soundness,
+                    Points& force) const noexcept;
 
  private:
   struct Vec {
@@ -95,11 +98,13 @@ class WallKernel {
   /// Adds the points' forces, with `pressure` on their J; returns their energy.
   static S stretch(const Point* point, const KernelRow& row, const std::vector<LawConstants>& laws, const Vec* c, const PointState* s, const S& pressure,
                    Vec* f) noexcept;
-  static double scatter(const Pack& pack, Vec* f, const S& energy, const S& upright, const std::vector<double>& soundness, Points& force) noexcept;
+  static void scatter(const Pack& pack, Vec* f, const S& energy, const S& upright, const std::vector<double>& soundness, Points& force, double& total) noexcept;
+  void pack_forces(const Pack& pack, const KernelRow& row, const std::vector<LawConstants>& laws, const Points& x, const std::vector<double>& soundness,
+                   Points& force, double& total) const noexcept;
 };
 
-template <class N>
-void WallKernel<N>::Assumed::measure(const Vec* c) noexcept {
+template <class S>
+void WallKernel<S>::Assumed::measure(const Vec* c) noexcept {
   a0 = dot(c[1], c[4]) + dot(c[3], c[6]);
   a1 = dot(c[1], c[6]) + dot(c[3], c[4]);
   b0 = dot(c[2], c[4]) + dot(c[3], c[5]);
@@ -110,8 +115,8 @@ void WallKernel<N>::Assumed::measure(const Vec* c) noexcept {
   r3 = 2.0 * dot(c[4], c[7]);
 }
 
-template <class N>
-void WallKernel<N>::Assumed::add_point(const S* T, double xi, double eta) noexcept {
+template <class S>
+void WallKernel<S>::Assumed::add_point(const S* T, double xi, double eta) noexcept {
   a0 += T[5];
   a1 += eta * T[5];
   b0 += T[4];
@@ -122,8 +127,8 @@ void WallKernel<N>::Assumed::add_point(const S* T, double xi, double eta) noexce
   r3 += (xi * eta) * T[2];
 }
 
-template <class N>
-void WallKernel<N>::Assumed::spread(const Vec* c, Vec* f) const noexcept {
+template <class S>
+void WallKernel<S>::Assumed::spread(const Vec* c, Vec* f) const noexcept {
   const S s0 = 2.0 * r0, s1 = 2.0 * r1, s2 = 2.0 * r2, s3 = 2.0 * r3;
   f[1].add(a0 * c[4] + a1 * c[6]);
   f[2].add(b0 * c[4] + b1 * c[5]);
@@ -134,8 +139,8 @@ void WallKernel<N>::Assumed::spread(const Vec* c, Vec* f) const noexcept {
   f[7].add(s3 * c[4]);
 }
 
-template <class N>
-void WallKernel<N>::Tangents::measure(const Vec* c, double zeta) noexcept {
+template <class S>
+void WallKernel<S>::Tangents::measure(const Vec* c, double zeta) noexcept {
   const S z(zeta), gauss(kGauss);
   const Vec u = c[1] + z * c[5], v = c[2] + z * c[6], d = gauss * (c[3] + z * c[7]);
   around[0] = u - d;
@@ -144,8 +149,8 @@ void WallKernel<N>::Tangents::measure(const Vec* c, double zeta) noexcept {
   along[1] = v + d;
 }
 
-template <class N>
-void WallKernel<N>::Tangents::spread(double zeta, Vec* f) const noexcept {
+template <class S>
+void WallKernel<S>::Tangents::spread(double zeta, Vec* f) const noexcept {
   const S z(zeta);
   const Vec u = around[0] + around[1], v = along[0] + along[1];
   const Vec w = S(kGauss) * ((around[1] - around[0]) + (along[1] - along[0]));
@@ -158,8 +163,8 @@ void WallKernel<N>::Tangents::spread(double zeta, Vec* f) const noexcept {
 }
 
 /// Coefficients of the eight products of local coordinates (Walsh-Hadamard transform of the corners).
-template <class N>
-void WallKernel<N>::gather(const Pack& pack, const Points& x, Vec* c) noexcept {
+template <class S>
+void WallKernel<S>::gather(const Pack& pack, const Points& x, Vec* c) noexcept {
   const double* base[kWidth];
   for (std::size_t l = 0; l < kWidth; ++l) base[l] = x.data() + 3 * static_cast<std::ptrdiff_t>(pack.node[l][0]);
   c[0] = Vec{};
@@ -180,15 +185,15 @@ void WallKernel<N>::gather(const Pack& pack, const Points& x, Vec* c) noexcept {
       }
 }
 
-template <class N>
-typename WallKernel<N>::S WallKernel<N>::volume_of(const Vec* c) noexcept {
+template <class S>
+S WallKernel<S>::volume_of(const Vec* c) noexcept {
   S v = S(0.0);
   for (const VolumeTerm& t : kVolumeTerms) v += t.weight * dot(c[t.i], cross(c[t.j], c[t.k]));
   return v;
 }
 
-template <class N>
-void WallKernel<N>::press(const Vec* c, const S& scale, Vec* f) noexcept {
+template <class S>
+void WallKernel<S>::press(const Vec* c, const S& scale, Vec* f) noexcept {
   for (const VolumeTerm& t : kVolumeTerms) {
     const S s = t.weight * scale;
     f[t.i].add(s * cross(c[t.j], c[t.k]));
@@ -197,8 +202,8 @@ void WallKernel<N>::press(const Vec* c, const S& scale, Vec* f) noexcept {
   }
 }
 
-template <class N>
-typename WallKernel<N>::S WallKernel<N>::measure(const Point* point, const KernelRow& row, const Vec* c, PointState* s, S& least) noexcept {
+template <class S>
+S WallKernel<S>::measure(const Point* point, const KernelRow& row, const Vec* c, PointState* s, S& least) noexcept {
   Assumed assumed;
   assumed.measure(c);
   S filled(0.0);
@@ -222,8 +227,8 @@ typename WallKernel<N>::S WallKernel<N>::measure(const Point* point, const Kerne
   return filled;
 }
 
-template <class N>
-typename WallKernel<N>::S WallKernel<N>::stretch(const Point* point, const KernelRow& row, const std::vector<LawConstants>& laws, const Vec* c,
+template <class S>
+S WallKernel<S>::stretch(const Point* point, const KernelRow& row, const std::vector<LawConstants>& laws, const Vec* c,
                                                  const PointState* s, const S& pressure, Vec* f) noexcept {
   Assumed on_assumed = {};
   S energy(0.0);
@@ -247,8 +252,9 @@ typename WallKernel<N>::S WallKernel<N>::stretch(const Point* point, const Kerne
   return energy;
 }
 
-template <class N>
-double WallKernel<N>::scatter(const Pack& pack, Vec* f, const S& energy, const S& upright, const std::vector<double>& soundness, Points& force) noexcept {
+template <class S>
+void WallKernel<S>::scatter(const Pack& pack, Vec* f, const S& energy, const S& upright, const std::vector<double>& soundness, Points& force,
+                            double& total) noexcept {
   const S half(0.5);
   for (int bit = 1; bit < 8; bit <<= 1)
     for (int a = 0; a < 8; ++a)
@@ -257,27 +263,30 @@ double WallKernel<N>::scatter(const Pack& pack, Vec* f, const S& energy, const S
         f[a] = half * (low - high);
         f[a | bit] = half * (low + high);
       }
-  double sum = 0.0;
-  for (std::size_t l = 0; l < kWidth; ++l) {
-    const int e = pack.element[l], k = static_cast<int>(l);
-    if (e < 0) continue;
-    const double sound = soundness[static_cast<std::size_t>(e)];
-    if (sound == 0.0) continue;
-    if (!(upright[k] > static_cast<N>(kInsideOut))) sum = std::numeric_limits<double>::infinity();
-    sum += sound * static_cast<double>(energy[k]);
-    for (std::size_t a = 0; a < 8; ++a) {
-      double* const to = force.data() + 3 * static_cast<std::ptrdiff_t>(pack.node[l][a]);
-      to[0] -= sound * static_cast<double>(f[a].x[k]);
-      to[1] -= sound * static_cast<double>(f[a].y[k]);
-      to[2] -= sound * static_cast<double>(f[a].z[k]);
+  constexpr std::size_t kSummed = std::min(kWidth, 8);
+  for (std::size_t first = 0; first < kWidth; first += kSummed) {
+    double sum = 0.0;
+    for (std::size_t l = first; l < first + kSummed; ++l) {
+      const int e = pack.element[l], k = static_cast<int>(l);
+      if (e < 0) continue;
+      const double sound = soundness[static_cast<std::size_t>(e)];
+      if (sound == 0.0) continue;
+      if (!(upright[k] > static_cast<N>(kInsideOut))) sum = std::numeric_limits<double>::infinity();
+      sum += sound * static_cast<double>(energy[k]);
+      for (std::size_t a = 0; a < 8; ++a) {
+        double* const to = force.data() + 3 * static_cast<std::ptrdiff_t>(pack.node[l][a]);
+        to[0] -= sound * static_cast<double>(f[a].x[k]);
+        to[1] -= sound * static_cast<double>(f[a].y[k]);
+        to[2] -= sound * static_cast<double>(f[a].z[k]);
+      }
     }
+    total += sum;
   }
-  return sum;
 }
 
-template <class N>
-double WallKernel<N>::forces(const Pack& pack, const KernelRow& row, const std::vector<LawConstants>& laws, const Points& x,
-                             const std::vector<double>& soundness, Points& force) const noexcept {
+template <class S>
+void WallKernel<S>::pack_forces(const Pack& pack, const KernelRow& row, const std::vector<LawConstants>& laws, const Points& x,
+                                const std::vector<double>& soundness, Points& force, double& total) const noexcept {
   Vec c[8], f[8] = {};
   gather(pack, x, c);
   const Point* const first = &points[pack.first_point];
@@ -288,7 +297,15 @@ double WallKernel<N>::forces(const Pack& pack, const KernelRow& row, const std::
   const S pressure = row.lambda_mean * change, crushed = positive_part(S(kCrushed) - signed_volume);
   press(c, S(-row.lambda_mean) * crushed, f);
   const S energy = 0.5 * row.lambda_mean * pack.volume * (change * change + crushed * crushed) + stretch(first, row, laws, c, states, pressure, f);
-  return scatter(pack, f, energy, least, soundness, force);
+  scatter(pack, f, energy, least, soundness, force, total);
+}
+
+template <class S>
+double WallKernel<S>::add_forces(const std::vector<KernelRow>& rows, const std::vector<LawConstants>& laws, const Points& x,
+                                 const std::vector<double>& soundness, Points& force) const noexcept {
+  double energy = 0.0;
+  for (const Pack& p : packs) pack_forces(p, rows[static_cast<std::size_t>(p.row)], laws, x, soundness, force, energy);
+  return energy;
 }
 
 }  // namespace filum
