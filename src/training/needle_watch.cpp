@@ -21,17 +21,6 @@ int passes_done(const TissueObservation& t) {
   }));
 }
 
-/// The thread through the first so many ways is cut on either side of each.
-bool cut_off(const Observation& o, int passes) {
-  if (o.tissue.n_passes < passes) return false;
-  for (int i = 0; i < passes; ++i) {
-    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
-    const ThreadPart piece = piece_at(o, arc);
-    if (arc < 0.0 || !cut_in_front(o, piece) || piece.last == o.n_nodes - 1) return false;
-  }
-  return true;
-}
-
 /// [m], thread before the first way of the piece that hangs on the needle; NaN while the needle is in it.
 double thread_left(const Observation& o) {
   const double start = o.n_parted == 0 ? 0.0 : o.arc[static_cast<std::size_t>(o.parted[static_cast<std::size_t>(o.n_parted - 1)] + 1)];
@@ -106,7 +95,7 @@ double needle_value(Measure measure, const NeedleReport& r) {
   }
 }
 
-NeedleWatch::NeedleWatch(const NeedleTask& task, const SceneDescription& scene) : task_(task), scene_(scene), order_(task.goals, scene.tissue), pass_time_(kMaxPasses, 0.0), tear_time_(kMaxPasses, kNaN) {}
+NeedleWatch::NeedleWatch(const NeedleTask& task, const SceneDescription& scene) : task_(task), scene_(scene), order_(task.goals, scene.tissue), pass_time_(kMaxPasses, 0.0), tear_time_(kMaxPasses, kNaN), whole_front_(kMaxPasses, 1) {}
 
 bool NeedleWatch::held_only_by(const Observation& o, int tool) const {
   for (int i = 0; i < o.n_tools; ++i)
@@ -131,6 +120,35 @@ bool NeedleWatch::through_eye(const NeedleGoal& g, const TissueObservation& t) {
     }
   }
   return false;
+}
+
+/// Where a suture begins it need not have been cut: a fresh one lies behind the pieces of those before it.
+void NeedleWatch::follow_cuts(const Observation& o) {
+  const auto cut_at = [&](const ThreadPart& piece, double arc) {
+    const auto first = static_cast<std::size_t>(piece.first);
+    return first > 0 && o.arc[first - 1] <= arc && arc <= o.arc[first];
+  };
+  const ThreadPart on_needle = {o.n_parted == 0 ? 0 : o.parted[static_cast<std::size_t>(o.n_parted - 1)] + 1, o.n_nodes - 1};
+  for (int k = 0; k < o.n_events; ++k) {
+    const WorldEvent& e = o.events[static_cast<std::size_t>(k)];
+    if (std::string_view(e.name) == "suture-fresh") whole_ = true;
+    if (std::string_view(e.name) != "cut") continue;
+    whole_ = whole_ && !cut_at(on_needle, e.value);
+    for (int i = 0; i < o.tissue.n_passes; ++i)
+      if (const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc; arc >= 0.0 && cut_at(piece_at(o, arc), e.value)) whole_front_[static_cast<std::size_t>(i)] = 0;
+  }
+  for (int i = 0; i < o.tissue.n_passes; ++i)
+    if (o.tissue.passes[static_cast<std::size_t>(i)].arc < 0.0) whole_front_[static_cast<std::size_t>(i)] = whole_ ? 1 : 0;
+}
+
+/// The thread through the first so many ways is cut on either side of each.
+bool NeedleWatch::cut_off(const Observation& o, int passes) const {
+  if (o.tissue.n_passes < passes) return false;
+  for (int i = 0; i < passes; ++i) {
+    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
+    if (arc < 0.0 || whole_front_[static_cast<std::size_t>(i)] != 0 || piece_at(o, arc).last == o.n_nodes - 1) return false;
+  }
+  return true;
 }
 
 bool NeedleWatch::tied(const NeedleGoal& g, const Observation& o) {
@@ -215,6 +233,7 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
     report_.handling.slips += name == "tissue-slipped" ? 1 : 0;
   }
   for (const GripObservation& g : o.tissue.grips) report_.handling.pull = std::max(report_.handling.pull, g.pull);
+  follow_cuts(o);
   blood_.observe(o);
   time_ = o.time;
   keep_times(o.tissue, o.time);

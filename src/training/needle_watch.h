@@ -9,7 +9,7 @@
 //   tie      a knot of so many throws holds those ways, drawn down until no more thread is in its loop than `loop`, for `seconds`, and of the
 //            classes of `knot` if any is asked for; looked at every quarter of a second
 //   stitch   whole stitches at the places, and in the turn, that a technique asks for (training/stitch_order.h)
-//   cut      the thread is cut on either side of the first so many ways
+//   cut      the thread is cut on either side of the first so many ways: before them as well where a fresh suture begins
 // Events: goal-done, stitch-out-of-turn. Test: needle_watch_test.
 
 #include <limits>
@@ -72,6 +72,8 @@ class NeedleWatch {
   bool met(const NeedleGoal& g, const Observation& o, double dt);
   bool through_eye(const NeedleGoal& g, const TissueObservation& t);
   bool tied(const NeedleGoal& g, const Observation& o);
+  void follow_cuts(const Observation& o);
+  bool cut_off(const Observation& o, int passes) const;
   void keep_times(const TissueObservation& t, double time);
   bool held_only_by(const Observation& o, int tool) const;
 
@@ -82,6 +84,8 @@ class NeedleWatch {
   StitchOrder order_;
   BloodWatch blood_;
   std::vector<double> pass_time_, tear_time_;  // [s], when each way through the tissue was made, and had torn as far as counts
+  std::vector<char> whole_front_;        // of each way: its suture still begins where it was laid
+  bool whole_ = true;                    // so does the strand on the needle
   int step_ = 0;
   int used_ = 0;                         // ways through the tissue that belong to eyes
   double kept_ = 0.0, time_ = 0.0;       // [s]

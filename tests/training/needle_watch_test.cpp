@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace filum {
@@ -245,6 +246,82 @@ TEST(NeedleWatch, CountsTakesDropsAndWholeStitches) {
   EXPECT_NEAR(needle_value(Measure::bite_widest, r), 2.0, 1e-9);
   EXPECT_NEAR(needle_value(Measure::tissue_pull, r), 4e-3, 1e-12);
   EXPECT_TRUE(std::isnan(needle_value(Measure::needle_angle, r)));
+}
+
+/// A thread of ten nodes, a millimetre apart, seen cut by cut; goals: both ends of the first two ways cut, then of the next two.
+struct CutThread {
+  NeedleWatch w;
+  Observation o = field();
+  std::vector<TaskEvent> events;
+  static NeedleTask task() {
+    NeedleTask task;
+    for (const int passes : {2, 4}) {
+      NeedleGoal cut;
+      cut.kind = NeedleGoal::Kind::cut;
+      cut.passes = passes;
+      task.goals.push_back(cut);
+    }
+    return task;
+  }
+  CutThread() : w(task(), {}) { lengthen(10); }
+  void lengthen(int n) {
+    o.n_nodes = n;
+    for (auto i = static_cast<int>(o.arc.size()); i < n; ++i) o.arc.push_back(1e-3 * i);
+  }
+  void see(const char* event = nullptr, double value = 0.0) {
+    o.n_events = event == nullptr ? 0 : 1;
+    if (event != nullptr) o.events[0] = {event, 2, value, "m"};
+    w.observe(o, kDt, true, events);
+  }
+  void sew(int pass, double arc) {
+    PassObservation& p = o.tissue.passes[static_cast<std::size_t>(pass)];
+    o.tissue.n_passes = pass + 1;
+    p.arc = -1.0;
+    see();
+    p.arc = arc;
+    see();
+  }
+  void part(int edge) {
+    o.parted[static_cast<std::size_t>(o.n_parted++)] = edge;
+    std::sort(o.parted.begin(), o.parted.begin() + o.n_parted);
+  }
+  void cut(int edge) {
+    part(edge);
+    see("cut", 1e-3 * edge + 0.4e-3);
+  }
+};
+
+TEST(NeedleWatch, BothEndsOfAFreshSutureMustBeCut) {
+  CutThread t;
+  t.sew(0, 4e-3);
+  t.sew(1, 5e-3);
+  t.cut(7);
+  EXPECT_EQ(t.w.step(), 0) << "the short end is whole";
+  t.cut(2);
+  EXPECT_EQ(t.w.step(), 1);
+  t.part(9);
+  t.lengthen(20);
+  t.see("suture-fresh", 1.0);
+  t.sew(2, 14e-3);
+  t.sew(3, 15e-3);
+  t.cut(17);
+  EXPECT_EQ(t.w.step(), 1) << "the fresh suture begins behind another piece, but nobody has cut it there";
+  t.cut(12);
+  EXPECT_TRUE(t.w.done());
+}
+
+TEST(NeedleWatch, AStrandThatBeginsAtACutIsCutInFront) {
+  CutThread t;
+  t.sew(0, 2e-3);
+  t.sew(1, 3e-3);
+  t.cut(1);
+  t.cut(4);
+  EXPECT_EQ(t.w.step(), 1);
+  t.sew(2, 6e-3);
+  t.sew(3, 7e-3);
+  EXPECT_EQ(t.w.step(), 1) << "the needle hangs on it";
+  t.cut(8);
+  EXPECT_TRUE(t.w.done());
 }
 
 }  // namespace needle_watch_test

@@ -41,7 +41,7 @@ Observation trefoil(double r, double tail, double rest, bool knotted = true) {
 StitchKnot knot_in(const Observation& o) { return knot_in_piece(o, piece_at(o, 0.5 * o.arc.back())); }
 
 /// The same with these edges cut.
-Observation cut_at(Observation o, std::initializer_list<int> edges) {
+Observation cut_at(Observation o, const std::vector<int>& edges) {
   for (const int edge : edges) o.parted[static_cast<std::size_t>(o.n_parted++)] = edge;
   return o;
 }
@@ -163,11 +163,17 @@ TEST(StitchKnot, TyingIsDoneWhenTheKnotHoldsTheBitesAndIsDrawnDown) {
   o.tissue.n_passes = 2;
   o.tissue.passes[0].arc = between - 1e-4;
   o.tissue.passes[1].arc = between + 1e-4;
-  watch.observe(cut_at(o, {3}), 0.1, true, events);
+  const auto snip = [&](const std::vector<int>& edges, int newest) {
+    Observation now = cut_at(o, edges);
+    now.n_events = 1;
+    now.events[0] = {"cut", 2, 0.5 * (o.arc[static_cast<std::size_t>(newest)] + o.arc[static_cast<std::size_t>(newest) + 1]), "m"};
+    watch.observe(now, 0.1, true, events);
+  };
+  snip({3}, 3);
   EXPECT_EQ(watch.step(), 1) << "one end is still whole";
-  watch.observe(cut_at(o, {3, 8}), 0.1, true, events);
+  snip({3, 8}, 8);
   EXPECT_EQ(watch.step(), 1) << "it was cut twice on the same side";
-  watch.observe(cut_at(o, {3, 150}), 0.1, true, events);
+  snip({3, 8, 150}, 150);
   EXPECT_TRUE(watch.done());
 }
 
