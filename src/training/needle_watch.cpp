@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kRightAngle = 0.5 * std::numbers::pi;
 constexpr double kLookEvery = 0.25;  // [s], at the thread for knots
+constexpr double kSameArc = 1e-9;    // [m], of the thread: a cut at a node is told to rounding
 
 int passes_done(const TissueObservation& t) {
   return static_cast<int>(std::count_if(t.passes.begin(), t.passes.begin() + t.n_passes, [](const PassObservation& p) {
@@ -126,7 +127,7 @@ bool NeedleWatch::through_eye(const NeedleGoal& g, const TissueObservation& t) {
 void NeedleWatch::follow_cuts(const Observation& o) {
   const auto cut_at = [&](const ThreadPart& piece, double arc) {
     const auto first = static_cast<std::size_t>(piece.first);
-    return first > 0 && o.arc[first - 1] <= arc && arc <= o.arc[first];
+    return first > 0 && o.arc[first - 1] <= arc + kSameArc && arc <= o.arc[first] + kSameArc;
   };
   const ThreadPart on_needle = {o.n_parted == 0 ? 0 : o.parted[static_cast<std::size_t>(o.n_parted - 1)] + 1, o.n_nodes - 1};
   for (int k = 0; k < o.n_events; ++k) {

@@ -285,9 +285,9 @@ struct CutThread {
     o.parted[static_cast<std::size_t>(o.n_parted++)] = edge;
     std::sort(o.parted.begin(), o.parted.begin() + o.n_parted);
   }
-  void cut(int edge) {
+  void cut(int edge, double share = 0.4) {
     part(edge);
-    see("cut", 1e-3 * edge + 0.4e-3);
+    see("cut", 1e-3 * (edge + share));
   }
 };
 
@@ -306,7 +306,7 @@ TEST(NeedleWatch, BothEndsOfAFreshSutureMustBeCut) {
   t.sew(3, 15e-3);
   t.cut(17);
   EXPECT_EQ(t.w.step(), 1) << "the fresh suture begins behind another piece, but nobody has cut it there";
-  t.cut(12);
+  t.cut(12, 1.0 + 1e-12);  // at a node
   EXPECT_TRUE(t.w.done());
 }
 
