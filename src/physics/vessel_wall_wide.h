@@ -8,7 +8,7 @@ namespace filum {
 
 using WideKernel = WallKernel<Lanes<float, 64>>;
 
-/// Has this build the code, and this processor what it takes (x86-64-v4)?
+/// Has this build the code, and this processor what it takes (x86-64-v4)? In vessel_wall_element.cpp: the code that asks must run everywhere.
 bool has_wide_lanes() noexcept;
 
 /// WideKernel::add_forces().
