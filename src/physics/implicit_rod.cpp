@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMostHalvings = 14;
 constexpr int kMostTethers = 256;
-constexpr int kMoreToArrive = 3;  // times the iterations while a body is under way: the next step takes it for arrived, and it must not jump over thread
+constexpr int kMoreToArrive = 3;  // times the iterations while a body is under way: whoever moves it has to leave it where it is if that is not enough
 constexpr int kLoadsFall = 6;       // iterations of a step in which friction's loads follow the normal forces down
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known
 constexpr double kLeastReach = 0.05;    // [radii], of the search for near pairs
@@ -222,9 +222,7 @@ void ImplicitRod::find_near(const RodState& s, const RodMemory& memory) noexcept
     }
   }
   fit_pattern(s.n);
-  double body_reach = 0.0;
-  for (const ObstacleBody& b : obstacles.bodies) body_reach = std::max(body_reach, (b.X_end.p - b.X_start.p).norm());
-  obstacles.find_touches(s, x_, material.radius, travel.reach, 1.5 * body_reach);
+  obstacles.find_touches(s, x_, material.radius, travel.reach);
   contact_.recall(memory.self);
   obstacles.recall(memory.obstacle);
 }

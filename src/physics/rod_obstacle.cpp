@@ -10,7 +10,11 @@
 namespace filum {
 namespace {
 
-constexpr int kChunk = 8;  // edges in one box of the broad phase
+constexpr int kChunk = 8;          // edges in one box of the broad phase
+constexpr double kDeepest = 16.0;  // [radii], of the thread in a body that comes upon it: as far as a node moves in an iteration
+constexpr double kDeeper = 8.0;    // [radii], by which a body goes on that thread is in the way of: less than the thread can get away by
+constexpr double kFar = 0.5;       // of a bar's radius
+constexpr double kArc = 1.5;       // of the straight way: more than that of a point that is turned by up to 170 degrees
 
 double bar_radius(const Obstacle& o, double t) noexcept { return (1.0 - t) * o.r_a + t * o.r_b; }
 
@@ -21,6 +25,18 @@ double spread(const Obstacle& o, double radius) noexcept { return 2.0 * push_spr
 /// answer it, not deep inside.
 double closest_allowed(double touching, double distance, double radius) noexcept {
   return std::min(touching - 0.3 * radius, 0.95 * distance);
+}
+
+/// [m], how far the end of a bar comes off its straight way as its body turns. Below 0.1 rad it is small against a bar's radius and not counted.
+double bulge(const ObstacleBody& body, const Obstacle& o) noexcept {
+  const double turn = body.X_now.q.angularDistance(body.X_end.q);
+  return turn < 0.1 ? 0.0 : 0.125 * turn * turn * std::max(o.a_B.norm(), o.b_B.norm());
+}
+
+/// Distance of the axes [m] at which a body stops for this iteration, so that thread can get out of its way.
+double closest_for_now(double touching, double distance, double radius, double bulge) noexcept {
+  const double fresh = std::max(0.6 * touching, touching - kDeepest * radius) + bulge;
+  return std::min(fresh, std::max(0.8 * distance, distance - kDeeper * radius));
 }
 
 Pose between(const Pose& from, const Pose& to, double f) noexcept {
@@ -59,32 +75,47 @@ void RodObstacles::place(std::size_t obstacle) noexcept {
   b_W_[obstacle] = X * o.b_B;
 }
 
-void RodObstacles::find_touches(const RodState& s, const Points& x, double radius, const Eigen::VectorXd& reach, double body_reach) noexcept {
+void RodObstacles::find_touches(const RodState& s, const Points& x, double radius, const Eigen::VectorXd& reach) noexcept {
   std::swap(touches_, known_);
   touches_.clear();
   a_W_.resize(obstacles.size());
   b_W_.resize(obstacles.size());
   gone_.assign(obstacles.size(), 0.0);
   near_.reserve(obstacles.size());
-  for (std::size_t k = 0; k < obstacles.size(); ++k) place(k);
+  way_.resize(obstacles.size());
+  double tips = 0.0;
+  for (const ObstacleBody& b : bodies) tips = std::max(tips, (b.X_end.p - b.X_start.p).norm());
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    place(k);
+    way_[k] = kArc * std::max(tips, sweep(k));
+  }
   double arc = s.arc_start;
   for (int begin = 0; begin + 1 < s.n; begin += kChunk) {
     const int end = std::min(begin + kChunk, s.n - 1);
     const auto nodes = x.middleCols(begin, end - begin + 1);
-    find_near_obstacles(nodes.rowwise().minCoeff(), nodes.rowwise().maxCoeff(), radius + reach.segment(begin, end - begin).maxCoeff() + body_reach);
+    find_near_obstacles(nodes.rowwise().minCoeff(), nodes.rowwise().maxCoeff(), radius + reach.segment(begin, end - begin).maxCoeff());
     for (int j = begin; j < end; arc += s.rest_length[j++])
       for (const int k : near_)
         if (arc + s.rest_length[j] <= obstacles[k].ignore_from || arc >= obstacles[k].ignore_to)
-          find_touch(s, x, radius, radius + reach[j] + body_reach, j, k);
+          find_touch(s, x, radius, radius + reach[j] + way_[k], j, k);
   }
   keep_loads();
+}
+
+/// How far any point of a bar goes until its body is at X_end (none farther than an end of its axis), where that is far for its radius: the shaft behind a tip
+/// that stays. One that comes on by less is found in the next step, the thread still before it; bars that only turn past would hold their bodies up. [m]
+double RodObstacles::sweep(std::size_t obstacle) const noexcept {
+  const Obstacle& o = obstacles[obstacle];
+  const Pose& X = bodies[static_cast<std::size_t>(o.body)].X_end;
+  const double far = std::max((X * o.a_B - a_W_[obstacle]).norm(), (X * o.b_B - b_W_[obstacle]).norm());
+  return far > kFar * std::max(o.r_a, o.r_b) ? far : 0.0;
 }
 
 /// Those that come within `margin` [m] of the box of some nodes.
 void RodObstacles::find_near_obstacles(const Vec3& low, const Vec3& high, double margin) noexcept {
   near_.clear();
   for (int k = 0; k < static_cast<int>(obstacles.size()); ++k)
-    if (obstacles[k].kind == Obstacle::Kind::plane || !beyond(low, high, k, margin)) near_.push_back(k);
+    if (obstacles[k].kind == Obstacle::Kind::plane || !beyond(low, high, k, margin + way_[k])) near_.push_back(k);
 }
 
 /// The box of a bar's axis is farther from that box than margin and the bar's radius.
@@ -147,7 +178,7 @@ bool RodObstacles::advance_bodies(const Points& x, double radius) noexcept {
       const Vec3 ends[4] = {x.col(t.edge), x.col(t.edge + 1), body.X_now * o.a_B, body.X_now * o.b_B};
       const Vec3 moves[4] = {Vec3::Zero(), Vec3::Zero(), body.X_end * o.a_B - ends[2], body.X_end * o.b_B - ends[3]};
       const SegmentPair c = closest_points(ends[0], ends[1], ends[2], ends[3]);
-      const double keep = std::min(0.6 * (radius + bar_radius(o, c.t)), 0.8 * c.distance);
+      const double keep = closest_for_now(radius + bar_radius(o, c.t), c.distance, radius, bulge(body, o));
       fraction = std::min(fraction, conservative_advance(ends, moves, keep));
     }
     body.X_now = fraction >= 1.0 ? body.X_end : between(body.X_now, body.X_end, fraction);

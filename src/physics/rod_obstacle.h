@@ -49,9 +49,9 @@ class RodObstacles {
   std::vector<ObstacleBody> bodies;
   std::vector<Obstacle> obstacles;
 
-  /// Collects what could touch while each edge moves at most reach[edge] and every body `body_reach` [m] from where it is. Touches known before
+  /// Collects what could touch while each edge moves at most reach[edge] [m] from where it is and every body goes on to X_end. Touches known before
   /// keep their load of friction, others have none.
-  void find_touches(const RodState& s, const Points& x, double radius, const Eigen::VectorXd& reach, double body_reach) noexcept;
+  void find_touches(const RodState& s, const Points& x, double radius, const Eigen::VectorXd& reach) noexcept;
   void recall(const std::vector<ContactBristle>& memory) noexcept;
   void remember(std::vector<ContactBristle>& memory) const noexcept;
 
@@ -86,11 +86,13 @@ class RodObstacles {
   void keep_loads() noexcept;
   void collect(int edge, int obstacle, double s, double gap) noexcept;
   void place(std::size_t obstacle) noexcept;
+  double sweep(std::size_t obstacle) const noexcept;
   void carry_bars(int body) noexcept;
 
   std::vector<ObstacleTouch> touches_, known_;
   std::vector<Vec3> a_W_, b_W_;  // [m], axis ends of each obstacle at X_now
   std::vector<int> near_;
+  std::vector<double> way_;      // [m], how far they may move
   std::vector<double> gone_;     // [m], how far they have moved since find_touches()
 };
 

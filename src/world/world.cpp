@@ -23,6 +23,7 @@ namespace {
 constexpr double kTrouble = 1e-4;      // [N], imbalance left by the solver that is worth reporting
 constexpr double kTakeGap = 0.10e-3;   // [m], tip gap below which closing jaws take what lies between them
 constexpr double kLeaveGap = 0.16e-3;  // [m], tip gap above which they have let go
+constexpr double kMostStrands = 8.0;   // at their strength: more than these an instrument does not feel of the thread
 constexpr double kIgnore = 0.45e-3;    // [m], thread on either side of the pads that does not touch the jaws that hold it
 
 /// Points where the thread has parted are held no longer.
@@ -58,6 +59,8 @@ struct World::Impl {
   void take_or_cut(int tool) noexcept;
   void ignore_held_thread() noexcept;
   void step_thread() noexcept;
+  void feel_thread() noexcept;
+  void stop_at_thread() noexcept;
   void step_pellets() noexcept;
   void part_overloaded_thread() noexcept;
   void start_brain();
@@ -280,13 +283,39 @@ void World::Impl::step_thread() noexcept {
   for (std::size_t i = 0; i < commands.size(); ++i) before[i] = held_by(static_cast<int>(i));
   solver = needle ? needle->step_thread(state, rod, model->step) : rod.step(state.thread, state.memory, model->step);
   if (!solver.sound || solver.crowded || (!solver.converged && solver.residual > kTrouble)) event("solver-trouble", -1, solver.residual, "N");
+  feel_thread();
+  stop_at_thread();
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    state.force[i] = rod.obstacles.bodies[i].force + rod.grasps.tools[i].force;
-    state.torque[i] = rod.obstacles.bodies[i].torque + rod.grasps.tools[i].torque;
     if (before[i] > 0 && held_by(static_cast<int>(i)) == 0)
       event("drop", static_cast<int>(i), state.instruments[i].grip_force, "N");
   }
   if (needle) needle->after_thread(state, rod, observation);
+}
+
+/// A force that no thread could bear is that of a step which found no balance: given in full it would throw the tool.
+void World::Impl::feel_thread() noexcept {
+  const double most = kMostStrands * model->thread.strength;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    state.force[i] = rod.obstacles.bodies[i].force + rod.grasps.tools[i].force;
+    state.torque[i] = rod.obstacles.bodies[i].torque + rod.grasps.tools[i].torque;
+    const double force = state.force[i].norm();
+    if (force <= most) continue;
+    state.force[i] *= most / force;
+    state.torque[i] *= most / force;
+  }
+}
+
+/// An instrument that thread did not let arrive is where it came to: put at the end of its way it would have jumped over strands.
+void World::Impl::stop_at_thread() noexcept {
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const ObstacleBody& body = rod.obstacles.bodies[i];
+    if (body.X_now.p == body.X_end.p && body.X_now.q.coeffs() == body.X_end.q.coeffs()) continue;
+    InstrumentState& tool = state.instruments[i];
+    const Eigen::AngleAxisd turn(body.X_now.q * body.X_start.q.conjugate());
+    tool.X_WT = body.X_now;
+    tool.v = (body.X_now.p - body.X_start.p) / model->step.dt;
+    tool.w = turn.angle() / model->step.dt * turn.axis();
+  }
 }
 
 void World::Impl::step_pellets() noexcept {

@@ -60,6 +60,29 @@ TEST(World, InstrumentsStopAtTheSheetAndAtThePostUnlessTheSceneLeavesThatOut) {
   }
 }
 
+TEST(World, AShaftThatIsFlungAtTheThreadDoesNotPassIt) {
+  for (const double speed : {150.0, 300.0, 600.0}) {  // [rad/s]: 5 to 20 m/s where it meets the thread
+    SCOPED_TRACE(speed);
+    auto m = std::make_shared<Model>(*scene());
+    m->instruments_touch = false;
+    World w(m);
+    State s = w.state();
+    const int node = s.thread.n - s.thread.n / 4;
+    InstrumentState& tool = s.instruments[0];
+    tool.X_WT = tool.X_WD = {s.thread.x.col(node) + Vec3(0, -8e-3, -35e-3), Quat::Identity()};
+    tool.w = Vec3(-speed, 0, 0);
+    w.restore(s);
+    for (int k = 0; k < 40; ++k) {
+      w.step(Inputs{});
+      const State& now = w.state();
+      const Pose& X = now.instruments[0].X_WT;
+      const Vec3 in_front = (X.q * Vec3::UnitZ()).cross(Vec3::UnitX());
+      ASSERT_GT(in_front.dot(now.thread.x.col(node) - X.p), 0.0) << "step " << k;
+      ASSERT_LT(now.instruments[0].w.norm(), speed) << "nor is it thrown back";
+    }
+  }
+}
+
 TEST(World, HandTakesTheThread) {
   World w(scene());
   bool grasped = false;
