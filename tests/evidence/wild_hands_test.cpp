@@ -53,8 +53,9 @@ TEST(WildHands, EveryOtherTask) {
 /// The thread's edges are numbered anew as they are halved and joined; the gap that is told is that of the edges the contacts knew.
 TEST(WildHands, StrandsAreNotSaidToBeNearerThanAnyTwoEdgesAre) {
   World world(load_model(FILUM_SOURCE_DIR, "knot-throw"));
-  WildHands hands(6, world.description());
+  WildHands hands(34, world.description());  // seen to fail where the gap was measured after nodes are merged
   int renumbered = 0;
+  double last = 1.0;  // [m], edges that were merged at the end of a step were still there when it was measured
   for (int k = 0; k < 80; ++k) {
     const int before = world.state().thread.n;
     world.step(hands.next(world.observation()));
@@ -64,7 +65,8 @@ TEST(WildHands, StrandsAreNotSaidToBeNearerThanAnyTwoEdgesAre) {
     for (int i = 0; i + 3 < t.n; ++i)
       for (int j = i + 2; j + 1 < t.n; ++j)
         if (t.alive[i] != 0 && t.alive[j] != 0) least = std::min(least, closest_points(t.x.col(i), t.x.col(i + 1), t.x.col(j), t.x.col(j + 1)).distance);
-    ASSERT_GE(world.observation().min_gap, least - 2.0 * world.observation().radius - 1e-9) << "step " << k;
+    ASSERT_GE(world.observation().min_gap, std::min(least, last) - 2.0 * world.observation().radius - 1e-9) << "step " << k;
+    last = least;
   }
   EXPECT_GT(renumbered, 5);
 }
