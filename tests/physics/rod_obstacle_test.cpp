@@ -93,61 +93,59 @@ TEST(RodObstacle, AcceleratesUnderALoadAboveTheLimitOfFriction) {
   EXPECT_NEAR(acceleration, 0.5 * kFriction * kGravity, 0.01 * kGravity);
 }
 
-TEST(RodObstacle, BarDrivenFastIntoTheThreadTakesItAlong) {
-  const RodMaterial m = nylon();
-  ImplicitRod rod(m, ContactMaterial(), 21);
-  Points x = Points::Zero(3, 21);
-  for (int i = 0; i < 21; ++i) x.col(i) = Vec3(0.5e-3 * i, 0, 0);
-  RodState s = RodState::from_nodes(x, 21);
+/// A straight 10 mm thread without weight, along x, and a bar that is led.
+struct BarAtThread {
+  RodMaterial m = nylon();
+  ImplicitRod rod{m, ContactMaterial(), 21};
+  RodState s;
   RodMemory memory = rod.make_memory();
-  rod.obstacles.bodies.emplace_back();
-  Obstacle bar;
-  bar.a_B = Vec3(5e-3, 0, -3e-3);
-  bar.b_B = Vec3(5e-3, 0, 3e-3);
-  bar.r_a = bar.r_b = 0.1e-3;
-  rod.obstacles.obstacles.push_back(bar);
   RodStepOptions o;
-  o.gravity.setZero();
-  ObstacleBody& body = rod.obstacles.bodies[0];
+
+  BarAtThread(const Vec3& a_B, const Vec3& b_B, double radius) {
+    Points x = Points::Zero(3, 21);
+    for (int i = 0; i < 21; ++i) x.col(i) = Vec3(0.5e-3 * i, 0, 0);
+    s = RodState::from_nodes(x, 21);
+    rod.obstacles.bodies.emplace_back();
+    Obstacle bar;
+    bar.a_B = a_B;
+    bar.b_B = b_B;
+    bar.r_a = bar.r_b = radius;
+    rod.obstacles.obstacles.push_back(bar);
+    o.gravity.setZero();
+  }
+  ObstacleBody& body() { return rod.obstacles.bodies[0]; }
+};
+
+TEST(RodObstacle, BarDrivenFastIntoTheThreadTakesItAlong) {
+  BarAtThread scene(Vec3(5e-3, 0, -3e-3), Vec3(5e-3, 0, 3e-3), 0.1e-3);
+  ObstacleBody& body = scene.body();
   body.X_start.p = body.X_end.p = Vec3(0, -0.5e-3, 0);
   for (int k = 0; k < 50; ++k) {  // 1 m/s: five bar diameters a step
     body.X_start = body.X_end;
     body.X_end.p.y() += 1e-3;
-    rod.step(s, memory, o);
+    scene.rod.step(scene.s, scene.memory, scene.o);
     const double bar_y = body.X_now.p.y();
-    ASSERT_GT(s.x(1, 10), bar_y) << "the bar passed through, step " << k;
+    ASSERT_GT(scene.s.x(1, 10), bar_y) << "the bar passed through, step " << k;
   }
-  EXPECT_GT(s.x(1, 10), 40e-3);
+  EXPECT_GT(scene.s.x(1, 10), 40e-3);
 }
 
 TEST(RodObstacle, BarTurnedAboutItsEndTakesTheThreadAlong) {  // a shaft behind a tip that stays
-  const RodMaterial m = nylon();
-  ImplicitRod rod(m, ContactMaterial(), 21);
-  Points x = Points::Zero(3, 21);
-  for (int i = 0; i < 21; ++i) x.col(i) = Vec3(0.5e-3 * i, 0, 0);
-  RodState s = RodState::from_nodes(x, 21);
-  RodMemory memory = rod.make_memory();
-  rod.obstacles.bodies.emplace_back();
-  Obstacle bar;
-  bar.a_B = Vec3::Zero();
-  bar.b_B = Vec3(0, 0, 60e-3);
-  bar.r_a = bar.r_b = 1e-3;
-  rod.obstacles.obstacles.push_back(bar);
-  RodStepOptions o;
-  o.gravity.setZero();
-  o.longest_move = 16.0 * m.radius;
-  ObstacleBody& body = rod.obstacles.bodies[0];
+  constexpr double kRadius = 1e-3;
+  BarAtThread scene(Vec3::Zero(), Vec3(0, 0, 60e-3), kRadius);
+  scene.o.longest_move = 16.0 * scene.m.radius;
+  ObstacleBody& body = scene.body();
   const Vec3 tip(5e-3, -4e-3, -50e-3);
   const auto turned = [&](double angle) { return Pose{tip, Quat(Eigen::AngleAxisd(-angle, Vec3::UnitX()))}; };
   body.X_end = turned(0.0);
   for (int k = 0; k < 6; ++k) {  // 4 to 6 mm a step where it meets the thread, from 3 mm beside it
     body.X_start = body.X_end;
     body.X_end = turned(0.1 * (k + 1));
-    rod.step(s, memory, o);
+    scene.rod.step(scene.s, scene.memory, scene.o);
     const Vec3 axis = body.X_now.q * Vec3::UnitZ(), out = axis.cross(Vec3::UnitX());
-    ASSERT_GT(out.dot(s.x.col(10) - tip), 0.5 * bar.r_a) << "the bar passed through, step " << k;
+    ASSERT_GT(out.dot(scene.s.x.col(10) - tip), 0.5 * kRadius) << "the bar passed through, step " << k;
   }
-  EXPECT_GT(s.x(1, 10), 15e-3);
+  EXPECT_GT(scene.s.x(1, 10), 15e-3);
 }
 
 TEST(RodObstacle, StretchHeldInTheJawsAndPartedEdgesAreNotTouched) {
