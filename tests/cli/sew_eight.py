@@ -21,7 +21,6 @@ BITES = ('aside', 'enter', 'leave', 'press', 'take')      # what is chosen befor
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
 FIRM = 0.55                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
 WIDE, INNER = 0.58, 0.1                                   # [mm], most of an outer bite, least of an inner one
-LOOP = 3.2                                                # [mm], most of a knot's loop
 OPENED = 'an earlier knot opened'
 PLACE = 21.0                                              # [degrees], most by which a stitch is beside its place
 
@@ -30,7 +29,8 @@ def of_scene(field): return re.search(r'^%s: (.*)' % field, open('%s/curricula/%
 
 
 STITCHES = int(of_scene('sutures').strip('"'))
-SLIDES = {8: (.7, .6, .8), 6: (.55, .5, .6)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
+LOOP = 3.6 if STITCHES == 6 else 3.2                      # [mm], most of a knot's loop
+SLIDES = {8: (.7, .6, .8), 6: (.6, .55, .65)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
 
 # Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave:
 # of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
