@@ -60,9 +60,17 @@ nlohmann::ordered_json report(const BrainScan& s, const BrainRegion& r) {
           {"window", {{"origin_mm", list(r.origin, 1e-3)}, {"outward", list(r.axes.col(2), 1.0)}, {"front", list(r.axes.col(1), 1.0)}}}};
 }
 
+/// [mm]. A number that is not one is refused, too.
+void check(const char* option, double value, double low, double high) {
+  if (!(value >= low && value <= high)) throw InputError(option, "length", std::to_string(value) + " mm", std::to_string(low) + " to " + std::to_string(high) + " mm");
+}
+
 int run(const Options& o, std::FILE* out) {
   constexpr double kMm = 1e-3;
   if (o.at.size() != 3) throw InputError("--at", "place", std::to_string(o.at.size()) + " numbers", "x,y,z in mm of the scanner");
+  check("--smooth", o.smooth, 0.0, 20.0);
+  check("--wear", o.wear, 0.0, 20.0);
+  for (const double v : o.at) check("--at", v, -1000.0, 1000.0);
   const BrainScan scan = find_brain(read_nifti(o.scan), {o.extracted, kMm * o.wear, kMm * o.smooth}, o.scan);
   const BrainRegion region = mesh_region(scan, {kMm * Vec3(o.at[0], o.at[1], o.at[2]), kMm * o.radius, kMm * o.depth, kMm * o.fine, kMm * o.coarse}, o.scan);
   fs::create_directories(o.out);

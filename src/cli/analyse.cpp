@@ -90,7 +90,14 @@ void print_text(const nlohmann::ordered_json& report, const Streams& io) {
   }
 }
 
+bool is_recording(const std::string& path) {
+  constexpr std::string_view kHead = "SQLite format 3";
+  std::string head(kHead.size(), '\0');
+  return std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size())) && head == kHead;
+}
+
 void write(const char* option, const std::string& path, const std::string& text) {
+  if (is_recording(path)) throw InputError(option, "file", path + ", which is a recording", "another name: a recording is never written over");
   std::ofstream file(path);
   file << text;
   if (!file.flush()) throw InputError(option, "file", path, "a file that can be written");

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "cli/driven_task.h"
+#include "cli/number_range.h"
 #include "cli/options.h"
 #include "cli/setup.h"
 #include "evidence/wild_hands.h"
@@ -148,7 +149,7 @@ void add_bench(CLI::App& app, Action& action) {
   command->add_option("name", o->names,
                       "Benches to run, by name or beginning of the name up to a hyphen (default: all)");
   command->add_option("--wild", o->wild, "Instead: so many seeds of violent random hands on the tasks named (default: one of every kind)")->check(CLI::Range(1, 1000000));
-  command->add_option("--wild-seconds", o->wild_seconds, "Scene time of each seed")->check(CLI::Range(0.01, 3600.0));
+  command->add_option("--wild-seconds", o->wild_seconds, "Scene time of each seed")->check(between(0.01, 3600.0));
   add_common(*command, o->common);
   command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }

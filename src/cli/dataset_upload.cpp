@@ -1,5 +1,8 @@
 #include "cli/dataset_upload.h"
 
+#include <string_view>
+#include <cstdlib>
+#include <csignal>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -71,13 +74,19 @@ int append(const std::string& file, const std::string& bytes) {
   return error;
 }
 
+/// Is it being sent to another trainer, which still runs? `name`: kHalfSent, its process, a dash.
+bool is_of_another(const std::string& name) {
+  const int process = std::atoi(name.c_str() + std::string_view(kHalfSent).size());
+  return process > 0 && process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
+}
+
 }  // namespace
 
 DatasetUpload::DatasetUpload(std::string datasets, std::chrono::milliseconds patience) : datasets_(std::move(datasets)), patience_(patience) {
   std::vector<fs::path> left;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(datasets_, ignored))
-    if (entry.path().filename().string().starts_with(kHalfSent)) left.push_back(entry.path());
+    if (const std::string name = entry.path().filename().string(); name.starts_with(kHalfSent) && !is_of_another(name)) left.push_back(entry.path());
   for (const fs::path& folder : left) fs::remove_all(folder, ignored);
 }
 

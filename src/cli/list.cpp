@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -36,6 +37,8 @@ std::string said_of(const std::string& kind) {
 
 int run(const CommonOptions& o, const Streams& io) {
   using Json = nlohmann::ordered_json;
+  if (!std::filesystem::is_directory(o.root + "/curricula") || !std::filesystem::is_directory(o.root + "/models"))
+    throw InputError("--root", "folder", o.root, "a folder with models/ and curricula/");
   std::vector<std::string> problems;
   Json tasks = Json::array();
   Json curricula = Json::array();

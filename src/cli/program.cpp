@@ -48,7 +48,10 @@ int program(int argc, const char* const* argv, const Streams& io) {
     return explain(app, error, io);
   }
   try {
-    return action.run(io);
+    const int code = action.run(io);
+    if (std::fflush(io.out) == 0 && std::ferror(io.out) == 0) return code;
+    std::fprintf(io.err, "filum: output: found an error (a full disk, a closed pipe), expected that all of it can be written\n");
+    return code == kDone ? kFailed : code;
   } catch (const InputError& error) {
     std::fprintf(io.err, "filum: %s\n", error.what());
     return kBadInput;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/live_session.h"
+#include "cli/number_range.h"
 #include "cli/options.h"
 #include "cli/session_files.h"
 #include "cli/tool_stream.h"
@@ -104,10 +105,10 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--forceps", o->forceps, "Calibration of the forceps on serial:PATH (from filum calibrate forceps)");
   command->add_option("--record", o->record, "Store the session in this new file");
   command->add_option("--code", o->code, "Code of the participant for --record: letters, digits, - and _; never a name");
-  command->add_option("--motion-scale", o->motion_scale, "Movement in the scene over that of the hand")->check(CLI::Range(0.001, 10.0))->capture_default_str();
+  command->add_option("--motion-scale", o->motion_scale, "Movement in the scene over that of the hand")->check(between(0.001, 10.0))->capture_default_str();
   command->add_option("--igtl-out", o->stream_port, "Send the tools' poses by OpenIGTLink from this port of this machine")->check(CLI::Range(1, 65535));
   command->add_flag("--real-time", o->real_time, "Keep to the clock instead of running as fast as possible");
-  command->add_option("--longest", o->longest, "End after this much scene time [s]")->check(CLI::Range(0.1, 36000.0))->capture_default_str();
+  command->add_option("--longest", o->longest, "End after this much scene time [s]")->check(between(0.1, 36000.0))->capture_default_str();
   add_common(*command, o->common);
   command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "cli/number_range.h"
 #include "cli/options.h"
 #include "cli/trainer.h"
 
@@ -48,7 +49,7 @@ void add_train(CLI::App& app, Action& action) {
   command->add_option("--serial", o->trainer.serial_port, "Serial port of the forceps, e.g. /dev/ttyACM0");
   command->add_option("--forceps", o->trainer.calibration, "Calibration of the forceps (from filum calibrate forceps)");
   command->add_option("--hands", o->trainer.hands, "Devices that know where the hands are: haptic:[ADDRESS:]PORT, igtl:[ADDRESS:]PORT, several joined by +");
-  command->add_option("--motion-scale", o->trainer.motion_scale, "Movement in the scene over that of the hand, with --hands")->check(CLI::Range(0.001, 10.0))->capture_default_str();
+  command->add_option("--motion-scale", o->trainer.motion_scale, "Movement in the scene over that of the hand, with --hands")->check(between(0.001, 10.0))->capture_default_str();
   command->add_option("--igtl-out", o->trainer.igtl_out, "Send the tools' poses by OpenIGTLink from this port of this machine")->check(CLI::Range(1, 65535));
   command->add_option("--camera", o->trainer.camera, "Video or pictures for the calibration of a camera, instead of a camera");
   command->add_option("--model", o->trainer.model_file, "A model.yaml of filum reconcile, for the tasks whose scene can show it");

@@ -39,6 +39,7 @@ bool apart(const State& s, const Observation& o) { return s.has_needle != 0 && (
 double fastest_of(const State& s) {
   double fastest = s.needle.v.norm();
   if (s.thread.n > 0) fastest = std::max(fastest, s.thread.v.leftCols(s.thread.n).colwise().norm().maxCoeff());
+  if (s.tissue.wall.v.size() > 0) fastest = std::max(fastest, s.tissue.wall.v.colwise().norm().maxCoeff());
   return fastest;
 }
 

@@ -10,6 +10,8 @@
 namespace filum {
 namespace {
 
+constexpr std::uint32_t kButtons = 63;  // all that there are (devices/device.h); the bits above are a handle's faults
+
 using nlohmann::json;
 
 // Collects the first fault found while a message's fields are read; later reads then give harmless defaults.
@@ -134,7 +136,7 @@ PointerMessage read_pointer(Fields& fields) {
     m.X_WD.q = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
   }
   m.grip = fields.number("grip", 0.0, 1.0);
-  m.buttons = static_cast<std::uint32_t>(fields.count("buttons", std::numeric_limits<std::uint32_t>::max()));
+  m.buttons = static_cast<std::uint32_t>(fields.count("buttons", kButtons));
   return m;
 }
 

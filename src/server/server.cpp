@@ -1,5 +1,6 @@
 #include "server/server.h"
 
+#include <cstdio>
 #include <map>
 #include <thread>
 
@@ -67,7 +68,7 @@ struct Server::Impl {
         error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
         std::make_shared<Connection>(
-            std::move(socket), [this](const Request& request) { return answer(request); },
+            std::move(socket), [this](const Request& request) { return answer_or_say(request); },
             [this](tcp::socket s, Request request) { add_browser(std::move(s), std::move(request)); }, slot)
             ->read();
       }
@@ -90,6 +91,15 @@ struct Server::Impl {
 
   Response fail(const Request& request, http::status status, std::string what) const {
     return plain(request, status, "text/plain; charset=utf-8", std::move(what) + "\n");
+  }
+
+  /// What fails for one page (a file, a store that another process holds) is that page's trouble, not the trainer's.
+  Response answer_or_say(const Request& request) {
+    try {
+      return answer(request);
+    } catch (const std::exception& error) {
+      return fail(request, http::status::internal_server_error, error.what());
+    }
   }
 
   Response answer(const Request& request) {
@@ -264,7 +274,15 @@ Server::~Server() { stop(); }
 
 void Server::start() {
   impl_->accept();
-  impl_->thread = std::thread([this] { impl_->io.run(); });
+  impl_->thread = std::thread([this] {
+    while (!impl_->io.stopped()) {
+      try {
+        impl_->io.run();
+      } catch (const std::exception& error) {
+        std::fprintf(stderr, "filum: server: %s\n", error.what());
+      }
+    }
+  });
 }
 
 void Server::stop() {

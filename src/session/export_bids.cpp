@@ -55,7 +55,11 @@ class TextOut {
     if (std::find(written.begin(), written.end(), path_) == written.end()) written.push_back(path_);
   }
   ~TextOut() noexcept(false) {
-    if (std::uncaught_exceptions() > 0) return;
+    if (std::uncaught_exceptions() == 0) close();
+  }
+  /// For one that is held by what may not throw as it ends.
+  void close() {
+    if (!stream_.is_open()) return;
     stream_.close();
     if (!stream_) fail();
   }
@@ -178,6 +182,7 @@ void write_hand(const RecordingReader& recording, const Names& names, int tool, 
       *out << row_of(cells);
     }
     if (!out) return;
+    out->close();
   }
   finish_system(names, system, recording.meta(), rate, true, written);
 }

@@ -200,6 +200,7 @@ class RecordingFile {
     json.at("input").get_to(meta.input);
     json.at("dt").get_to(meta.dt);
     json.at("n_tools").get_to(meta.n_tools);
+    if (!(meta.dt > 0.0 && meta.dt <= 0.1)) damaged("dt " + std::to_string(meta.dt) + " s");
     if (meta.n_tools < 0 || meta.n_tools > 3) damaged("n_tools " + std::to_string(meta.n_tools));
   }
 
@@ -321,7 +322,9 @@ std::uint64_t RecordingReader::last_step() const {
   std::vector<char> bytes;
   std::size_t count = 0;
   try {
-    for (long long last = file_->last_block("steps"); last > 0; --last) {
+    constexpr int kMostTries = 10'000;  // numbers of blocks are what the file says
+    int tries = 0;
+    for (long long last = file_->last_block("steps"); last > 0 && tries < kMostTries; --last, ++tries) {
       try {
         long long id = last - 1;
         if (file_->next_block("steps", id, count, bytes) && unpack(bytes, count, meta().n_tools, block)) return block.back().step;

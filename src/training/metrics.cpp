@@ -158,7 +158,7 @@ std::vector<Segment> movements(const std::vector<double>& speed, double fs, cons
   const std::vector<double> smooth = low_pass(speed, fs, options.cut_off);
   const auto shortest = static_cast<std::size_t>(options.shortest * fs);
   for (std::size_t k = 0; k < smooth.size();) {
-    if (smooth[k] < options.rest) {
+    if (!(smooth[k] >= options.rest)) {  // nor what is not a number
       ++k;
       continue;
     }

@@ -138,6 +138,7 @@ Json stitch_json(const Stitch& s, double thickness) {
           {"throws", s.throws},
           {"knot", s.knot.empty() ? Json(nullptr) : Json(s.knot)},
           {"tail_mm", finite(1e3 * s.tail)},
+          {"short_tail_mm", finite(1e3 * s.short_tail)},
           {"slack_mm", finite(1e3 * s.slack)}};
 }
 

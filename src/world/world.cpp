@@ -20,6 +20,7 @@
 namespace filum {
 namespace {
 
+constexpr double kFarthestHand = 10.0;  // [m], beyond which a pose is no hand's but a fault
 constexpr double kTrouble = 1e-4;      // [N], imbalance left by the solver that is worth reporting
 constexpr double kTakeGap = 0.10e-3;   // [m], tip gap below which closing jaws take what lies between them
 constexpr double kLeaveGap = 0.16e-3;  // [m], tip gap above which they have let go
@@ -171,7 +172,7 @@ void World::Impl::read_inputs(const Inputs& inputs) noexcept {
   std::uint32_t buttons = 0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const ToolInput& in = inputs.tools[i];
-    const bool sound = in.valid && in.X_WD.finite() && std::abs(in.X_WD.q.norm() - 1.0) < 1e-3 && std::isfinite(in.grip_angle) &&
+    const bool sound = in.valid && in.X_WD.finite() && in.X_WD.p.cwiseAbs().maxCoeff() < kFarthestHand && std::abs(in.X_WD.q.norm() - 1.0) < 1e-3 && std::isfinite(in.grip_angle) &&
                        std::isfinite(in.grip_force);
     InstrumentCommand& c = commands[i];
     c.follow = sound;

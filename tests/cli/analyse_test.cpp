@@ -42,6 +42,13 @@ TEST_F(Analyse, PlotAndPageAreWrittenWhereAskedFor) {
   expect_refused({"analyse", folder_.file("one"), "--page", folder_.file("none/p.html")}, {"--page", folder_.file("none/p.html"), "a file that can be written"});
 }
 
+TEST_F(Analyse, ARecordingIsNeverWrittenOver) {
+  const auto bytes = fs::file_size(folder_.file("one"));
+  for (const char* option : {"--plot", "--page"})
+    expect_refused({"analyse", folder_.file("one"), option, folder_.file("one")}, {option, folder_.file("one"), "a recording is never written over"});
+  EXPECT_EQ(fs::file_size(folder_.file("one")), bytes);
+}
+
 TEST_F(Analyse, ASqueezeThatNoDeviceMeasuredIsTheSimulations) {
   const RecordedSession session = open_session(folder_.file("one"));
   ASSERT_FALSE(session.tools.empty());

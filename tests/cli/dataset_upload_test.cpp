@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -46,6 +48,16 @@ class DatasetUploadTest : public testing::Test {
   }
   synthetic::Folder folder_;
 };
+
+/// A second trainer in the same store took away what the first was being sent.
+TEST_F(DatasetUploadTest, WhatAnotherTrainerIsBeingSentIsLeft) {
+  const std::string running = folder_.file(".upload-" + std::to_string(::getppid()) + "-1"), gone = folder_.file(".upload-999999999-1");
+  fs::create_directories(running);
+  fs::create_directories(gone);
+  const DatasetUpload upload(folder_.file(""));
+  EXPECT_TRUE(fs::exists(running));
+  EXPECT_FALSE(fs::exists(gone)) << "of a trainer that was killed";
+}
 
 TEST_F(DatasetUploadTest, PartsBecomeTheFolderThatWasChosen) {
   DatasetUpload upload(folder_.file(""));
@@ -135,12 +147,12 @@ TEST_F(DatasetUploadTest, OneAtATimeUntilItIsAbandoned) {
 }
 
 TEST_F(DatasetUploadTest, WhatAKilledTrainerLeftIsRemovedAndNothingElse) {
-  fs::create_directories(folder_.file(".upload-17-1"));
-  std::ofstream(folder_.file(".upload-17-1/a.csv")) << "half";
+  fs::create_directories(folder_.file(".upload-999999999-1"));
+  std::ofstream(folder_.file(".upload-999999999-1/a.csv")) << "half";
   fs::create_directories(folder_.file("mine"));
   std::ofstream(folder_.file(".keep")) << "";
   const DatasetUpload upload(folder_.file(""));
-  EXPECT_FALSE(fs::exists(folder_.file(".upload-17-1")));
+  EXPECT_FALSE(fs::exists(folder_.file(".upload-999999999-1")));
   EXPECT_EQ(entries(), 2);
 }
 

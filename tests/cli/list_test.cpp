@@ -77,6 +77,10 @@ TEST(List, TextNamesTheSameTasks) {
   for (const auto& name : names_of(call({"list", "--json"}).json()["tasks"])) EXPECT_NE(text.out.find("\n  " + name + " "), std::string::npos) << name;
 }
 
+TEST(List, AFolderThatHoldsNothingOfFilumIsRefused) {
+  expect_refused({"list", "--root", "/nowhere"}, {"--root", "/nowhere", "a folder with models/ and curricula/"});
+}
+
 TEST(List, ATaskThatCannotBeReadIsNamedAndTheOthersAreStillListed) {
   const synthetic::Folder root;
   for (const char* folder : {"models", "curricula"}) fs::copy(fs::path(FILUM_SOURCE_DIR) / folder, root.path() / folder, fs::copy_options::recursive);

@@ -31,5 +31,20 @@ TEST(Program, WhatItDoesNotKnowIsBadInputAndSaidOnStderr) {
   expect_refused({"run", "tip-hold", "--motion-scale", "0"}, {"--motion-scale"});
 }
 
+TEST(Program, NumbersThatAreNoneAreRefused) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", "tip-hold", "--longest", "nan"}, {"run", "tip-hold", "--motion-scale", "nan"}, {"bench", "--wild", "1", "--wild-seconds", "nan", "tip-hold"}})
+    expect_refused(words, {"found nan", "a number from"});
+}
+
+TEST(Program, WhatCouldNotBeWrittenIsNotCalledDone) {
+  std::FILE* full = std::fopen("/dev/full", "w");
+  ASSERT_NE(full, nullptr);
+  const Ear said;
+  const char* words[] = {"filum", "list", "--json"};
+  EXPECT_EQ(program(3, words, {stdin, full, said.stream()}), kFailed);
+  EXPECT_NE(said.heard().find("a full disk"), std::string::npos);
+  std::fclose(full);
+}
+
 }  // namespace program_test
 }  // namespace filum

@@ -10,7 +10,9 @@
 #include <map>
 
 #include "base/error.h"
+#include "training/needle_task.h"
 #include "world/model.h"
+#include "world/vessel_model.h"
 
 namespace filum {
 namespace setup_test {
@@ -76,6 +78,18 @@ TEST(Setup, WhatHasNoAdventitiaCannotBeHeldByIt) {
 
 TEST(Setup, EveryTaskHasTheToolsForItsSteps) {
   for (const std::string& name : task_names(FILUM_SOURCE_DIR)) EXPECT_NO_THROW(load_setup(FILUM_SOURCE_DIR, name)) << name;
+}
+
+/// A stitch that counts as too tight where the wall has given way long before would never be told.
+TEST(Setup, AWallBearsWhatCountsAsTooTight) {
+  int looked_at = 0;
+  for (const std::string& name : task_names(FILUM_SOURCE_DIR)) {
+    const auto s = load_setup(FILUM_SOURCE_DIR, name);
+    if (!s.model->vessel || !s.task.needle) continue;
+    ++looked_at;
+    EXPECT_LT(s.task.needle->lapses.tight, 0.5 * s.model->vessel->track.tear) << name;
+  }
+  EXPECT_GT(looked_at, 5);
 }
 
 TEST(Setup, EveryTaskThatIsListedCanBeRead) {

@@ -7,6 +7,8 @@ namespace origin_test {
 
 TEST(Origin, SameHostAndPortOnly) {
   EXPECT_TRUE(origin_allowed("http://127.0.0.1:8137", "127.0.0.1:8137", true));
+  EXPECT_FALSE(origin_allowed("http://127.example.org:8137", "127.example.org:8137", true)) << "a name that its owner lets point here";
+  EXPECT_FALSE(origin_allowed("", "127.0.0.1.example.org:8137", true));
   EXPECT_TRUE(origin_allowed("http://LOCALHOST:8137", "localhost:8137", true));
   EXPECT_TRUE(origin_allowed("http://[::1]:8137", "[::1]:8137", true));
   EXPECT_TRUE(origin_allowed("", "127.0.0.1:8137", true));

@@ -27,6 +27,7 @@ class RecordingHost : public ServerHost {
   void controlled(bool by_somebody) override { note([&] { control.push_back(by_somebody); }); }
   std::optional<std::string> api(std::string_view path) override {
     if (path == "/api/sessions") return R"({"sessions":[]})";
+    if (path == "/api/agreement") throw std::runtime_error("database is locked");
     return std::nullopt;
   }
   std::optional<std::string> post(std::string_view path, const std::string& body) override {
@@ -150,6 +151,14 @@ TEST_F(ServerTest, AnswersUnderApi) {
   EXPECT_EQ(schema.fault(json::parse(get("/api/health").body()), "Health"), "");
   EXPECT_EQ(schema.fault(json::parse(get("/api/sessions").body()), "SessionList"), "");
   EXPECT_EQ(get("/api/nothing").result_int(), 404u);
+}
+
+/// A store that another process held brought the whole trainer down.
+TEST_F(ServerTest, WhatFailsForOnePageIsSaidAndTheNextIsAnswered) {
+  const auto failed = fetch(server_->port(), "/api/agreement");
+  EXPECT_EQ(failed.result(), http::status::internal_server_error);
+  EXPECT_NE(failed.body().find("database is locked"), std::string::npos);
+  EXPECT_EQ(fetch(server_->port(), "/api/sessions").result(), http::status::ok);
 }
 
 TEST_F(ServerTest, RefusesOversizedRequestsAndForeignNames) {

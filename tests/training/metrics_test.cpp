@@ -126,6 +126,9 @@ TEST(Metrics, SmallShakesAreNoMovements) {
   EXPECT_TRUE(movements(speed_of(path, 100.0), 100.0).empty());
 }
 
+/// A recording whose poses are not numbers was looked through without end.
+TEST(Metrics, WhatIsNotANumberIsNoMovement) { EXPECT_TRUE(movements(std::vector<double>(500, std::nan("")), 100.0).empty()); }
+
 TEST(Metrics, BimanualLagAndDominance) {
   const Points first = moves(4);
   Points second = first;

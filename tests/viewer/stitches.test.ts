@@ -31,10 +31,11 @@ describe("stitches of a result", () => {
     expect([before[1], before[6]]).toEqual(["– / –", "–"]);
   });
   it("show the knot of each where it was recognised", () => {
-    const tied = { ...result, stitches: [{ ...result.stitches![0], throws: 3, knot: "square", tail_mm: [1.25, 0.8] }] };
+    const tied = { ...result, stitches: [{ ...result.stitches![0], throws: 3, knot: "square", tail_mm: 1.25, short_tail_mm: 0.8 }] };
     const cells = [...stitchSection(tied, null)!.querySelectorAll("tbody td")].map((one) => one.textContent);
     expect(cells.slice(-4, -1)).toEqual(["3", "Square", "1.3 / 0.8"]);
-    expect(tails(undefined)).toBe("–");
+    expect(tails({})).toBe("–");
+    expect(tails({ tail_mm: 1.25, short_tail_mm: null })).toBe("1.3");
     const section = clampSection({ upstream_s: 12, downstream_s: null, order_right: true, note: "as asked", pressure_mmhg: [99, 98], leak_ml_per_min: 1, most_leak_ml_per_min: 2, through_ml_per_min: 4.9, lost_ml: 0.1, least_lumen_before_mm2: 0.2, least_lumen_mm2: 0.3 },
       { tests: 1, refilled: 1, stayed_empty: 0, spoiled: 0, refill_s: 0.012, emptied_ml: 3e-4, note: "no proof" })!;
     expect(section.textContent).toContain("left on");

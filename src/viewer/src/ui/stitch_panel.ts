@@ -17,9 +17,11 @@ function cell(value: number | null | undefined, factor: number, digits: number):
 }
 
 /// "1.2 / 0.9": the cut ends of a knot; a dash where there is none.
-export function tails(value: Stitch["tail_mm"]): string {
-  if (value === null || value === undefined) return "–";
-  return both(Array.isArray(value) ? value : [value], 1);
+export function tails(stitch: Pick<Stitch, "tail_mm" | "short_tail_mm">): string {
+  const { tail_mm: longer, short_tail_mm: shorter } = stitch;
+  if (longer === null || longer === undefined) return "–";
+  if (Array.isArray(longer)) return both(longer, 1);
+  return both(shorter === null || shorter === undefined ? [longer] : [longer, shorter], 1);
 }
 
 /// "310 / 290": bites where the needle left the first side and came into the second. Older results do not tell.
@@ -51,7 +53,7 @@ function row(stitch: Stitch, k: number, next: number | null | undefined, lapses:
   const found = lapses.length > 0 ? [icon.warn(), " ", lapses.map((one) => words(one.name)).join(", ")] : ["none"];
   const numbers = [both(stitch.bite_thicknesses, 1), inner(stitch), cell(stitch.entry_angle_deg, 1, 0), cell(stitch.exit_angle_deg, 1, 0), cell(stitch.obliquity_deg, 1, 0), cell(stitch.depth_share, 100, 0), layers(stitch),
     cell(next, 1000, 2), cell(stitch.tension_n, 1000, 1), cell(stitch.peak_force_n, 1000, 1), cell(stitch.torn_m, 1e6, 0),
-    cell(stitch.throws, 1, 0), stitch.knot ? words(stitch.knot) : "–", tails(stitch.tail_mm)];
+    cell(stitch.throws, 1, 0), stitch.knot ? words(stitch.knot) : "–", tails(stitch)];
   return h("tr", { "data-stitch": k }, h("th", { scope: "row" }, id ? h("a", { href: replayAt(id, stitch.time, k), title: "Show this stitch in the replay" }, name) : name),
     ...numbers.map((text) => h("td", { class: "number" }, text)), h("td", { class: lapses.length > 0 ? "alarm" : "quiet" }, ...found));
 }
@@ -162,7 +164,7 @@ export class StitchList {
     if (one) {
       const facts: [string, string][] = [["Bites", `${both(one.bite_thicknesses, 1)} wall thicknesses`], ["Inside", `${inner(one)} µm`], ["Entry, exit", `${cell(one.entry_angle_deg, 1, 0)}°, ${cell(one.exit_angle_deg, 1, 0)}°`],
         ["Oblique", `${cell(one.obliquity_deg, 1, 0)}°`], ["Depth", `${cell(one.depth_share, 100, 0)} % of the wall`], ["Layers", layers(one)], ["Next", `${cell(one.spacing_m, 1000, 2)} mm`], ["Tension left", `${cell(one.tension_n, 1000, 1)} mN`], ["Torn", `${cell(one.torn_m, 1e6, 0)} µm`],
-        ["Knot", one.knot ? `${words(one.knot)}, ${cell(one.throws, 1, 0)} throws, tails ${tails(one.tail_mm)} mm` : "–"]];
+        ["Knot", one.knot ? `${words(one.knot)}, ${cell(one.throws, 1, 0)} throws, tails ${tails(one)} mm` : "–"]];
       const lapses = ofStitch(this.result.lapses, this.chosen);
       this.facts.append(h("h3", {}, `Stitch ${stitch + 1}`), h("dl", { class: "facts" }, ...facts.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])),
         ...lapses.map((lapse) => h("p", { class: "alarm" }, icon.warn(), ` ${words(lapse.name)}: ${lapseValue(lapse)}`)));
