@@ -1,8 +1,5 @@
 #include "cli/dataset_upload.h"
 
-#include <string_view>
-#include <cstdlib>
-#include <csignal>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -10,10 +7,13 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
 #include "base/error.h"
 #include "cli/requests.h"
