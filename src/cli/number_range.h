@@ -2,7 +2,6 @@
 // A range for an argument's number. CLI::Range takes what is not a number: it is neither below nor above.
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <string>
 
 namespace filum {

@@ -20,7 +20,6 @@ function cell(value: number | null | undefined, factor: number, digits: number):
 export function tails(stitch: Pick<Stitch, "tail_mm" | "short_tail_mm">): string {
   const { tail_mm: longer, short_tail_mm: shorter } = stitch;
   if (longer === null || longer === undefined) return "–";
-  if (Array.isArray(longer)) return both(longer, 1);
   return both(shorter === null || shorter === undefined ? [longer] : [longer, shorter], 1);
 }
 
