@@ -11,9 +11,13 @@ using Json = nlohmann::ordered_json;
 
 struct TooDeep {};
 
+constexpr int kMostPoints = 100;  // of an item of a scale
+
 std::vector<ItemMark> marks_of(const Json& scale, const Json& given) {
   if (!given.is_object()) throw InputError("rating", "marks", "nothing", "points for every item");
-  const int most = scale.at("most").get<int>();
+  const Json& high = scale.at("most");
+  if (!high.is_number_unsigned() || high > kMostPoints) throw InputError("scale", "most", json_shown(high), "a whole number from 1 to " + std::to_string(kMostPoints));
+  const int most = high.get<int>();
   std::vector<ItemMark> marks;
   for (const Json& item : scale.at("items")) {
     const auto name = item.at("name").get<std::string>();

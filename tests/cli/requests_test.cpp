@@ -41,5 +41,15 @@ TEST(Requests, NestingThatWouldEndTheStackIsRefused) {
   EXPECT_THROW(requested_rating("s", "t", scale, R"({"rater":"R1","marks":)" + deep + "}"), InputError);
 }
 
+/// A damaged recording's scale: a number that no int holds is not turned into one.
+TEST(Requests, AScaleOfAbsurdPointsIsRefused) {
+  const auto rated = [](const char* most) {
+    const auto scale = parsed_json(std::string(R"({"name":"mars10","most":)") + most + R"(,"items":[{"name":"closure"}]})");
+    return requested_rating("s", "t", scale, R"({"rater":"R1","marks":{"closure":1}})");
+  };
+  EXPECT_EQ(rated("2").marks.front().points, 1);
+  for (const char* most : {"22222222222222222222222222222222", "4294967298", "1.5", "-1", "\"2\"", "null"}) EXPECT_THROW(rated(most), InputError) << most;
+}
+
 }  // namespace requests_test
 }  // namespace filum
