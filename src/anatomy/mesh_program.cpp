@@ -8,6 +8,7 @@
 
 #include "anatomy/brain_mesher.h"
 #include "base/error.h"
+#include "base/out_folder.h"
 
 namespace filum {
 namespace {
@@ -71,6 +72,7 @@ int run(const Options& o, std::FILE* out) {
   check("--smooth", o.smooth, 0.0, 20.0);
   check("--wear", o.wear, 0.0, 20.0);
   for (const double v : o.at) check("--at", v, -1000.0, 1000.0);
+  require_out_folder("--out", o.out);
   const BrainScan scan = find_brain(read_nifti(o.scan), {o.extracted, kMm * o.wear, kMm * o.smooth}, o.scan);
   const BrainRegion region = mesh_region(scan, {kMm * Vec3(o.at[0], o.at[1], o.at[2]), kMm * o.radius, kMm * o.depth, kMm * o.fine, kMm * o.coarse}, o.scan);
   fs::create_directories(o.out);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "base/out_folder.h"
 #include "cli/options.h"
 #include "reconcile/importer.h"
 
@@ -20,6 +21,7 @@ void add_import(CLI::App& app, Action& action) {
   command->add_option("--out", o->out, "Folder for the datasets")->required();
   command->callback([o, &action] {
     action.run = [o](const Streams& io) {
+      require_out_folder("--out", o->out);
       for (const std::string& name : reconcile::import_data(o->kind, o->folder, o->out)) std::fprintf(io.out, "%s/%s\n", o->out.c_str(), name.c_str());
       return static_cast<int>(kDone);
     };

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -16,6 +18,7 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "base/out_folder.h"
 #include "cli/options.h"
 #include "ranks/ranks.h"
 #include "reconcile/plugin.h"
@@ -110,6 +113,12 @@ std::unique_ptr<Ranks> start_ranks(const Share& share, const Streams& io) {
   return ranks;
 }
 
+/// A report that was cut, as by a copy that did not end, is none.
+bool has_report(const ReconcileOptions& o, const std::string& name) {
+  std::ifstream in(fs::path(o.out) / name / "report.json", std::ios::binary);
+  return in && parsed_json({std::istreambuf_iterator<char>(in), {}}).is_object();
+}
+
 /// Datasets of the folder that have no report yet, one name a line.
 std::string unfinished(const ReconcileOptions& o) {
   std::vector<std::string> names;
@@ -118,7 +127,7 @@ std::string unfinished(const ReconcileOptions& o) {
   std::sort(names.begin(), names.end());
   std::string list;
   for (const std::string& name : names)
-    if (o.again || !fs::exists(fs::path(o.out) / name / "report.json")) list += name + "\n";
+    if (o.again || !has_report(o, name)) list += name + "\n";
   return list;
 }
 
@@ -148,7 +157,7 @@ int run_all(const ReconcileOptions& o, const Streams& io) {
   reconcile::parallel(threads, static_cast<std::size_t>(threads), [&](std::size_t) {
     for (long i = next(); i < static_cast<long>(names.size()); i = next()) {
       const std::string& folder = names[static_cast<std::size_t>(i)];
-      if (by_number && !o.again && fs::exists(fs::path(o.out) / folder / "report.json")) continue;
+      if (by_number && !o.again && has_report(o, folder)) continue;
       std::string name, line;
       try {
         const auto r = solve((fs::path(o.all) / folder).string(), (fs::path(o.out) / folder).string(), o, 1, false, name, io);
@@ -180,7 +189,9 @@ void add_reconcile(CLI::App& app, Action& action) {
   command->add_flag("--repeatable", o->repeatable, "Leave the time it took out of the report, so that equal data give equal files");
   command->callback([o, &action] {
     action.run = [o](const Streams& io) {
+      if (o->again && o->all.empty()) throw InputError("--again", "DATASET", o->dataset.empty() ? "nothing" : o->dataset, "--all FOLDER beside it: one dataset is always solved");
       if (o->dataset.empty() == o->all.empty()) throw InputError("reconcile", "DATASET", o->dataset.empty() ? "nothing" : "a folder and --all", "one folder, or --all FOLDER");
+      require_out_folder("--out", o->out);
       return o->all.empty() ? run_one(*o, io) : run_all(*o, io);
     };
   });

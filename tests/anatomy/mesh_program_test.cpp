@@ -67,6 +67,7 @@ TEST_F(MeshProgram, WhatIsAskedWronglyIsNamedAndNothingIsWritten) {
   refused({file("head.nii"), "--at", "0,50", "--out", file("x")}, "--at: place: found 2 numbers, expected x,y,z in mm");
   refused({file("none.nii"), "--at", "0,0,50", "--out", file("x")}, "none.nii");
   refused({file("head.nii"), "--at", "0,0,50", "--radius", "500", "--out", file("x")}, "head.nii");
+  refused({file("head.nii"), "--at", "0,0,50", "--out", file("head.nii")}, "--out: folder: found ");
   EXPECT_FALSE(fs::exists(file("x")));
   EXPECT_EQ(call({"--help"}), 0);
   EXPECT_NE(out_.find("--extracted"), std::string::npos);

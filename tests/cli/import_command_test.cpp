@@ -121,6 +121,7 @@ TEST(ImportCommand, WhatIsMissingOrWrongIsNamed) {
   write_brain(folder);
   const std::string brain = folder.file("brain"), out = folder.file("out");
   expect_refused({"import", "plasticine", brain, "--out", out}, {"plasticine", "brain-budday2017, muscle-vanloocke or loadcells-fareke"});
+  expect_refused({"import", "brain-budday2017", brain, "--out", brain + "/cortex_tension.csv"}, {"--out", "cortex_tension.csv", "expected a folder that can be written"});
   expect_refused({"import", "brain-budday2017", folder.file("none"), "--out", out}, {folder.file("none")});
   const std::string sound = text_of(brain + "/cortex_tension.csv");
   folder.write("brain/cortex_tension.csv", std::string(sound).replace(sound.find("\n1.005,") + 1, 5, "abc"));

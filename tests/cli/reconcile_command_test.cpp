@@ -80,6 +80,21 @@ TEST(ReconcileCommand, WhatIsWrongInADatasetIsNamedByFileLineAndColumn) {
   expect_refused({"reconcile", folder.file("block"), "--all", folder.path(), "--out", out}, {"one folder, or --all FOLDER"});
   expect_refused({"reconcile", "--all", folder.file("block/b.csv"), "--out", out}, {"--all", "a folder of datasets"});
   EXPECT_FALSE(fs::exists(out));
+  expect_refused({"reconcile", folder.file("block"), "--out", folder.file("block/b.csv")}, {"--out", "b.csv", "expected a folder that can be written"});
+  expect_refused({"reconcile", folder.file("block"), "--again", "--out", out}, {"--again", folder.file("block"), "expected --all FOLDER beside it"});
+}
+
+TEST(ReconcileCommand, AReportThatWasCutIsNoneAndTheDatasetSolvedAgain) {
+  const reconcile::Folder folder;
+  write_block(folder, "all/block");
+  const std::vector<std::string> words = {"reconcile", "--all", folder.file("all"), "--out", folder.file("out")};
+  EXPECT_NE(call(words).err.find("1/1 block: agree"), std::string::npos);
+  EXPECT_EQ(call(words).err, "") << "it has a report";
+  const std::string report = folder.file("out/block/report.json");
+  fs::resize_file(report, fs::file_size(report) / 2);
+  EXPECT_NE(call(words).err.find("1/1 block: agree"), std::string::npos);
+  std::ifstream written(report);
+  EXPECT_EQ(nlohmann::ordered_json::parse(written)["verdict"], "agree");
 }
 
 }  // namespace reconcile_command_test
