@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/out_folder.h"
 #include "cli/options.h"
 #include "cli/session_files.h"
 #include "session/export.h"
@@ -40,6 +41,8 @@ std::vector<Table> readable_tables(const RecordingReader& recording, bool damage
 }
 
 int run(const ExportOptions& o, const Streams& io) {
+  require_out_folder("--out", o.folder);
+  if (o.format != "bids") require_no_export(o.folder);  // before the recording is stepped again
   const RecordingReader recording(o.file);
   const std::vector<std::string> damage = recording.find_damage();
   std::vector<std::string> files;
@@ -60,7 +63,7 @@ void add_export(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("export", "Write a recording as CSV or HDF5 with a data dictionary, or as Motion-BIDS");
   command->add_option("file", o->file, "Recording")->required();
   command->add_option("--format", o->format, "csv, hdf5 or bids (Motion-BIDS)")->check(CLI::IsMember({"csv", "hdf5", "bids"}))->capture_default_str();
-  command->add_option("--out", o->folder, "Folder to write to; made if it is not there")->required();
+  command->add_option("--out", o->folder, "Folder to write to, made if it is not there; an export in it is never written over (bids: joined)")->required();
   command->add_flag("--json", o->json, "Print one JSON document and nothing else");
   command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }

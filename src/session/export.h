@@ -32,17 +32,22 @@ std::vector<Table> recorded_tables(const RecordingReader& recording);
 /// tension. "simulated".
 Table simulated_table(const RecordingReader& recording, World& world);
 
+/// Throws InputError where `folder` holds an export as CSV or HDF5: none is written over.
+void require_no_export(const std::string& folder);
+
 /// One NAME.csv for each table and data-dictionary.csv (file, column, unit, rate_hz, meaning) in `folder`,
-/// which is made. Returns the files written. Throws InputError when the folder cannot be written.
+/// which is made. Returns the files written: all, or none with an exception. Throws InputError when the folder cannot be written or
+/// holds one of the files, std::runtime_error when the disk is full.
 std::vector<std::string> export_csv(const std::vector<Table>& tables, const RecordingMeta& meta,
                                     const std::string& folder);
 
 /// folder/recording.h5 (a group for each table; attributes rate_hz, description; unit and description on each
-/// data set) and data-dictionary.csv.
+/// data set) and data-dictionary.csv. Throws as export_csv().
 std::vector<std::string> export_hdf5(const std::vector<Table>& tables, const RecordingMeta& meta,
                                      const std::string& folder);
 
-/// A Motion-BIDS dataset in `folder`; recordings exported to the same folder join it. Returns the files written.
+/// A Motion-BIDS dataset in `folder`; recordings exported to the same folder join it. Returns the files written. Where the disk is full
+/// those that are there are whole (std::runtime_error).
 std::vector<std::string> export_bids(const RecordingReader& recording, const std::string& folder);
 
 }  // namespace filum

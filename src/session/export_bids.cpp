@@ -14,13 +14,13 @@
 #include "base/file_kind.h"
 #include "base/numbers.h"
 #include "session/export.h"
+#include "session/new_files.h"
 
 namespace filum {
 namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
 
 struct Channel {
   const char* name;
@@ -47,21 +47,24 @@ std::string label(const std::string& text, const std::string& otherwise) {
   return out.empty() ? otherwise : out;
 }
 
+/// A file that takes its place, and that of one before it, when it is whole.
 class TextOut {
  public:
-  TextOut(const fs::path& path, std::vector<std::string>& written, bool append = false)
-      : path_(path.string()), stream_(path, append ? std::ios::app : std::ios::trunc) {
-    if (!stream_) fail();
+  TextOut(const fs::path& path, std::vector<std::string>& written) : path_(path.string()), part_(path_ + ".part"), stream_(part_) {
+    if (!stream_) throw InputError(path_, "export", "a write error", "a folder that can be written");
     if (std::find(written.begin(), written.end(), path_) == written.end()) written.push_back(path_);
   }
   ~TextOut() noexcept(false) {
     if (std::uncaught_exceptions() == 0) close();
+    if (stream_.is_open()) drop();
   }
   /// For one that is held by what may not throw as it ends.
   void close() {
     if (!stream_.is_open()) return;
     stream_.close();
-    if (!stream_) fail();
+    if (stream_) return fs::rename(part_, path_);
+    drop();
+    throw_unwritten(path_);
   }
   TextOut& operator<<(const std::string& text) {
     stream_ << text;
@@ -69,8 +72,11 @@ class TextOut {
   }
 
  private:
-  [[noreturn]] void fail() const { throw InputError(path_, "export", "a write error", "a folder that can be written, with space left"); }
-  std::string path_;
+  void drop() const {
+    std::error_code ignored;
+    fs::remove(part_, ignored);
+  }
+  std::string path_, part_;
   std::ofstream stream_;
 };
 

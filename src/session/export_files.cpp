@@ -6,14 +6,17 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <span>
+#include <stdexcept>
 
-#include "base/error.h"
-#include "base/file_kind.h"
 #include "session/export.h"
+#include "session/new_files.h"
 
 namespace filum {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr const char* kDictionary = "data-dictionary.csv";  // of every export
 
 std::size_t length(const Column& column) {
   return std::visit([](const auto& values) { return values.size(); }, column.values);
@@ -55,39 +58,29 @@ void append_cell(std::string& line, const Column& column, std::size_t row) {
   append_field(line, std::get<std::vector<std::string>>(column.values)[row]);
 }
 
-class TextFile {
+class NewFile {
  public:
-  explicit TextFile(const fs::path& path) : path_(path.string()), stream_(path, std::ios::binary) {
-    if (!stream_) fail();
+  NewFile(const NewFiles& files, const std::string& name) : path_(files.place(name)), stream_(files.aside(name), std::ios::binary) {
+    if (!stream_) throw_unwritten(path_);
   }
+  void write(std::span<const char> bytes) { stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); }
   void line(std::string& text) {
     text += "\r\n";
-    stream_.write(text.data(), static_cast<std::streamsize>(text.size()));
+    write(text);
     text.clear();
   }
-  std::string close() {
+  void close() {
     stream_.close();
-    if (!stream_) fail();
-    return path_;
+    if (!stream_) throw_unwritten(path_);
   }
 
  private:
-  [[noreturn]] void fail() const {
-    throw InputError(path_, "export", "a write error", "a folder that can be written, with space left");
-  }
   std::string path_;
   std::ofstream stream_;
 };
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!is_folder(folder))
-    throw InputError(folder, "export", error.message(), "a folder that can be made");
-}
-
-std::string write_table(const Table& table, const fs::path& path) {
-  TextFile file(path);
+void write_table(const Table& table, const NewFiles& files) {
+  NewFile file(files, table.name + ".csv");
   std::string line;
   for (const Column& column : table.columns) {
     if (!line.empty()) line += ',';
@@ -101,12 +94,12 @@ std::string write_table(const Table& table, const fs::path& path) {
     }
     file.line(line);
   }
-  return file.close();
+  file.close();
 }
 
 class Dictionary {
  public:
-  explicit Dictionary(const std::string& folder) : file_(fs::path(folder) / "data-dictionary.csv") {
+  explicit Dictionary(const NewFiles& files) : file_(files, kDictionary) {
     std::string line = "file,column,unit,rate_hz,meaning";
     file_.line(line);
   }
@@ -125,18 +118,19 @@ class Dictionary {
       file_.line(line);
     }
   }
-  std::string close() { return file_.close(); }
+  void close() { file_.close(); }
 
  private:
-  TextFile file_;
+  NewFile file_;
 };
+
+[[noreturn]] void throw_library_error(const std::string& file) { throw std::runtime_error(file + ": export: found an error of HDF5, expected enough memory"); }
 
 /// An HDF5 identifier that closes itself; a negative one is an error of the library.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), const std::string& file) : id_(id), close_(close) {
-    if (id_ < 0)
-      throw InputError(file, "export", "an error of HDF5", "a folder that can be written, with space left");
+    if (id_ < 0) throw_library_error(file);
   }
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
@@ -148,11 +142,20 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// Access to a file in memory that is never on disk: where a disk is full the library cannot close a file, and crashes as the program ends.
+hid_t in_memory() {
+  constexpr std::size_t kGrowth = std::size_t{1} << 20;  // [bytes]
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_fapl_core(access, kGrowth, 0);
+  return access;
+}
+
 class Hdf5File {
  public:
   explicit Hdf5File(const std::string& path)
       : path_((H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr), path)),
-        file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose, path),
+        access_(in_memory(), H5Pclose, path),
+        file_(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access_), H5Fclose, path),
         text_type_(H5Tcopy(H5T_C_S1), H5Tclose, path) {
     check(H5Tset_size(text_type_, H5T_VARIABLE));
     check(H5Tset_cset(text_type_, H5T_CSET_UTF8));
@@ -168,11 +171,22 @@ class Hdf5File {
     for (const Column& column : table.columns) write(group, column);
   }
 
-  void flush() { check(H5Fflush(file_, H5F_SCOPE_GLOBAL)); }
+  /// The file as it is to stand on disk.
+  std::vector<char> bytes() {
+    check(H5Fflush(file_, H5F_SCOPE_GLOBAL));
+    const auto image = [this](void* to, std::size_t room) {
+      const ssize_t size = H5Fget_file_image(file_, to, room);
+      if (size < 0) throw_library_error(path_);
+      return static_cast<std::size_t>(size);
+    };
+    std::vector<char> all(image(nullptr, 0));
+    image(all.data(), all.size());
+    return all;
+  }
 
  private:
   void check(herr_t result) const {
-    if (result < 0) throw InputError(path_, "export", "an error of HDF5", "a folder with space left");
+    if (result < 0) throw_library_error(path_);
   }
 
   void attribute(hid_t object, const std::string& name, const std::string& value) {
@@ -215,18 +229,13 @@ class Hdf5File {
   }
 
   std::string path_;
+  Handle access_;
   Handle file_;
   Handle text_type_;
 };
 
-}  // namespace
-
-std::vector<std::string> export_csv(const std::vector<Table>& tables, const RecordingMeta& meta,
-                                    const std::string& folder) {
-  make_folder(folder);
-  std::vector<std::string> files;
-  for (const Table& table : tables)
-    files.push_back(write_table(table, fs::path(folder) / (table.name + ".csv")));
+/// What the recording is of, as a table of one row.
+Table about_of(const RecordingMeta& meta) {
   Table about{"recording", 0.0, "the session", {}};
   const auto say = [&](const char* name, const char* unit, const char* meaning, const std::string& value) {
     about.columns.push_back({name, unit, meaning, std::vector<std::string>{value}});
@@ -237,29 +246,50 @@ std::vector<std::string> export_csv(const std::vector<Table>& tables, const Reco
   say("input", "-", "what moved the tools", meta.input);
   say("program", "-", "version that recorded", meta.program);
   about.columns.push_back({"dt", "s", "time step of the simulation", std::vector<double>{meta.dt}});
-  files.push_back(write_table(about, fs::path(folder) / "recording.csv"));
-  Dictionary dictionary(folder);
-  for (const Table& table : tables) dictionary.add(table, table.name + ".csv");
-  dictionary.add(about, "recording.csv");
-  files.push_back(dictionary.close());
-  return files;
+  return about;
+}
+
+}  // namespace
+
+void require_no_export(const std::string& folder) { require_unused(fs::path(folder) / kDictionary); }
+
+std::vector<std::string> export_csv(const std::vector<Table>& tables, const RecordingMeta& meta,
+                                    const std::string& folder) {
+  const Table about = about_of(meta);
+  std::vector<const Table*> all;
+  for (const Table& table : tables) all.push_back(&table);
+  all.push_back(&about);
+  std::vector<std::string> names;
+  for (const Table* table : all) names.push_back(table->name + ".csv");
+  names.emplace_back(kDictionary);
+  NewFiles files(folder, names);
+  Dictionary dictionary(files);
+  for (const Table* table : all) {
+    write_table(*table, files);
+    dictionary.add(*table, table->name + ".csv");
+  }
+  dictionary.close();
+  return files.put();
 }
 
 std::vector<std::string> export_hdf5(const std::vector<Table>& tables, const RecordingMeta& meta,
                                      const std::string& folder) {
-  make_folder(folder);
-  const std::string path = (fs::path(folder) / "recording.h5").string();
-  Hdf5File file(path);
+  const std::string name = "recording.h5";
+  NewFiles files(folder, {name, kDictionary});
+  Hdf5File file(files.place(name));
   file.attribute("task", meta.task);
   file.attribute("participant", meta.participant);
   file.attribute("started_utc", meta.started_utc);
   file.attribute("input", meta.input);
   file.attribute("program", meta.program);
   for (const Table& table : tables) file.write(table);
-  file.flush();
-  Dictionary dictionary(folder);
-  for (const Table& table : tables) dictionary.add(table, "recording.h5:" + table.name);
-  return {path, dictionary.close()};
+  NewFile on_disk(files, name);
+  on_disk.write(file.bytes());
+  on_disk.close();
+  Dictionary dictionary(files);
+  for (const Table& table : tables) dictionary.add(table, name + ":" + table.name);
+  dictionary.close();
+  return files.put();
 }
 
 }  // namespace filum

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "program_call.h"
+#include "tests/session/disk_limit.h"
 #include "tests/session/synthetic.h"
 
 namespace filum {
@@ -60,6 +61,26 @@ TEST_F(Export, AWrongFormatFileOrFolderIsNamed) {
   EXPECT_FALSE(fs::exists(folder_.file("x")));
   std::ofstream(folder_.file("file")) << "in the way";
   expect_refused({"export", folder_.file("one"), "--out", folder_.file("file")}, {folder_.file("file"), "expected"});
+}
+
+TEST_F(Export, AnExportThatIsThereIsNotWrittenOver) {
+  files("csv");
+  for (const char* format : {"csv", "hdf5"})
+    expect_refused({"export", folder_.file("one"), "--format", format, "--out", folder_.file("csv")}, {folder_.file("csv"), "a file that exists", "an export is never written over"});
+  files("bids");
+  EXPECT_FALSE(files("bids").empty()) << "a dataset is joined";
+}
+
+TEST_F(Export, AFullDiskIsSaidAndNothingHalfIsLeft) {
+  recorded_run(folder_.file("long"), "4");
+  const DiskLimit limit(512 << 10);  // more than a file of the scene, less than any export of four seconds
+  for (const char* format : {"csv", "hdf5"}) {
+    const Call c = call({"export", folder_.file("long"), "--format", format, "--out", folder_.file("full")});
+    EXPECT_EQ(c.code, kFailed) << c.err;
+    EXPECT_EQ(c.out, "");
+    EXPECT_NE(c.err.find("a disk with space left"), std::string::npos) << c.err;
+    EXPECT_FALSE(fs::exists(folder_.file("full")));
+  }
 }
 
 }  // namespace export_test

@@ -1,5 +1,5 @@
 #!/bin/bash
-# A disk that fills up while a session is recorded or a store is opened, and a file system that cannot be written. They are mounted for
+# A disk that fills up while a session is recorded or exported or a store is opened, and a file system that cannot be written. They are mounted for
 # the test; where that is not allowed it is skipped, and says why. Usage: full_disk_test.sh FILUM ROOT
 filum=$1 root=$2
 work=$(mktemp -d)
@@ -45,6 +45,13 @@ expect "store that cannot be written" 1 "a folder that can be written" doctor --
 head -c 100000 /dev/zero >"$work/small/fill" 2>/dev/null
 expect "store on a full disk" 1 "Make room on the disk of the store" doctor --store "$work/small" --viewer "$work/viewer"
 ls "$work/small" | grep -q damaged && { echo "a full disk was taken for damage"; failures=$((failures + 1)); }
+
+# an export without room leaves nothing, and the library of HDF5 does not crash as the program ends
+umount "$work/small" && mount -t tmpfs -o size=64k tmpfs "$work/small" || exit 1
+for format in csv hdf5; do
+  expect "$format export onto a full disk" 1 "a disk with space left" export "$work/whole" --format $format --out "$work/small/out"
+  [ -z "$(ls -A "$work/small")" ] || { echo "$format export left on a full disk: $(ls -AR "$work/small")"; failures=$((failures + 1)); }
+done
 
 [ $failures -eq 0 ] || exit 1
 echo "full_disk_test: all as expected"

@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "base/error.h"
 #include "session/export.h"
+#include "tests/session/disk_limit.h"
 #include "tests/session/synthetic.h"
 
 namespace filum {
@@ -78,6 +80,27 @@ TEST(ExportBids, RecordingsJoinOneDatasetAndTwiceIsOnce) {
   record(folder.file("b.rec"), "P02", "2026-11-21T10:30:00Z");
   for (const char* name : {"a.rec", "b.rec", "a.rec"}) export_bids(RecordingReader(folder.file(name)), folder.file("set"));
   EXPECT_EQ(lines_of(folder.path() / "set/participants.tsv").size(), 3u);
+}
+
+TEST(ExportBids, OnAFullDiskTheDatasetStaysWhole) {
+  synthetic::Folder folder;
+  record(folder.file("a.rec"), "P01", "2026-11-21T09:30:00Z");
+  record(folder.file("b.rec"), "P02", "2026-11-21T10:30:00Z");
+  export_bids(RecordingReader(folder.file("a.rec")), folder.file("set"));
+  const RecordingReader second(folder.file("b.rec"));
+  {
+    const DiskLimit limit(8192);  // enough for all but the motion
+    try {
+      export_bids(second, folder.file("set"));
+      ADD_FAILURE() << "written";
+    } catch (const InputError& error) {
+      ADD_FAILURE() << "no bad input: " << error.what();
+    } catch (const std::exception& error) {
+      EXPECT_NE(std::string(error.what()).find("_motion.tsv: export: found a write error"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(lines_of(folder.path() / "set/participants.tsv").size(), 3u);
+  for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "set/sub-P02")) EXPECT_EQ(entry.path().string().find("motion.tsv"), std::string::npos) << entry.path();
 }
 
 TEST(ExportBids, TheValidatorFindsNoErrors) {

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "session/export.h"
+#include "tests/session/disk_limit.h"
 #include "tests/session/synthetic.h"
 
 namespace filum {
@@ -169,6 +170,62 @@ TEST(Export, AFolderThatCannotBeWrittenIsAnInputError) {
   ASSERT_TRUE(user.is());
   EXPECT_THROW(export_csv(odd_tables(), synthetic::meta(), folder.file("locked")), InputError);
   EXPECT_THROW(export_hdf5(odd_tables(), synthetic::meta(), folder.file("locked")), InputError);
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+using Exporter = std::vector<std::string> (*)(const std::vector<Table>&, const RecordingMeta&, const std::string&);
+constexpr Exporter kExporters[] = {export_csv, export_hdf5};
+
+/// What an export says where it ends; empty: it did not.
+std::string failure(Exporter exporter, const std::string& folder) {
+  const std::vector<Table> long_ones = {{"long", 500.0, "longer than there is room", {{"x", "m", "numbers", std::vector<double>(4000, 0.1)}}}};
+  try {
+    exporter(long_ones, synthetic::meta(), folder);
+  } catch (const InputError& error) {
+    return std::string("bad input: ") + error.what();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Export, OfAnExportOntoAFullDiskNothingIsLeft) {
+  const synthetic::Folder folder;
+  std::filesystem::create_directory(folder.file("there"));
+  std::ofstream(folder.file("there/mine")) << "x";
+  {
+    const DiskLimit limit(8192);
+    for (const Exporter exporter : kExporters) {
+      EXPECT_NE(failure(exporter, folder.file("new")).find("export: found a write error, expected a disk with space left"), std::string::npos);
+      EXPECT_EQ(failure(exporter, folder.file("there")).find(folder.file("there")), 0u) << "no bad input, and by the name it was to have";
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file("new")));
+  EXPECT_EQ(names_in(folder.file("there")), std::vector<std::string>{"mine"});
+  for (const Exporter exporter : kExporters) EXPECT_EQ(failure(exporter, folder.file(exporter == export_csv ? "csv" : "hdf5")), "") << "there is room again";
+}
+
+TEST(Export, AnExportIsNeverWrittenOver) {
+  const synthetic::Folder folder;
+  EXPECT_NO_THROW(require_no_export(folder.file("a")));
+  for (const Exporter exporter : kExporters) {
+    const std::string name = folder.file(exporter == export_csv ? "csv" : "hdf5");
+    exporter(odd_tables(), synthetic::meta(), name);
+    const auto before = names_in(name);
+    EXPECT_THROW(require_no_export(name), InputError);
+    for (const Exporter second : kExporters) EXPECT_NE(failure(second, name).find("bad input: "), std::string::npos) << "both have a dictionary";
+    EXPECT_EQ(names_in(name), before);
+  }
+  std::filesystem::create_directory(folder.file("other"));
+  std::ofstream(folder.file("other/long.csv")) << "somebody's own";
+  EXPECT_NE(failure(export_csv, folder.file("other")).find("long.csv: export: found a file that exists"), std::string::npos);
+  EXPECT_EQ(names_in(folder.file("other")), std::vector<std::string>{"long.csv"});
 }
 
 }  // namespace export_files_test

@@ -1,0 +1,48 @@
+#include "session/new_files.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "base/file_kind.h"
+
+namespace filum {
+namespace fs = std::filesystem;
+
+void throw_unwritten(const std::string& path) { throw std::runtime_error(path + ": export: found a write error, expected a disk with space left"); }
+
+void require_unused(const fs::path& path) {
+  if (is_there(path)) throw InputError(path.string(), "export", "a file that exists", "a folder without it: an export is never written over");
+}
+
+NewFiles::NewFiles(const std::string& folder, std::vector<std::string> names) : folder_(folder), names_(std::move(names)) {
+  std::error_code error;
+  made_ = fs::create_directories(folder_, error);
+  if (!is_folder(folder_)) throw InputError(folder, "export", error.message(), "a folder that can be made");
+  for (const std::string& name : names_) require_unused(folder_ / name);
+  std::string aside = (folder_ / ".export-XXXXXX").string();
+  if (::mkdtemp(aside.data()) == nullptr) {
+    if (errno == ENOSPC) throw_unwritten(folder);
+    throw InputError(folder, "export", "a write error", "a folder that can be written");
+  }
+  aside_ = aside;
+}
+
+NewFiles::~NewFiles() {
+  std::error_code ignored;
+  fs::remove_all(aside_, ignored);
+  if (made_) fs::remove(folder_, ignored);  // empty where nothing was put
+}
+
+std::vector<std::string> NewFiles::put() {
+  std::vector<std::string> places;
+  for (const std::string& name : names_) {
+    places.push_back(place(name));
+    fs::rename(aside_ / name, places.back());
+  }
+  return places;
+}
+
+}  // namespace filum

@@ -1,0 +1,37 @@
+#pragma once
+// Files of an export are whole or not there: they are written in a folder aside and put in their places when all of them are on disk.
+// Private to session.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace filum {
+
+/// The disk is full or fails: no fault of what was asked for, hence no InputError.
+[[noreturn]] void throw_unwritten(const std::string& path);
+/// Throws InputError where `path` is taken.
+void require_unused(const std::filesystem::path& path);
+
+class NewFiles {
+ public:
+  /// For `names` in `folder`, which is made. Throws InputError where that cannot be, or where one of them is there already.
+  NewFiles(const std::string& folder, std::vector<std::string> names);
+  /// Leaves nothing that was not put in its place.
+  ~NewFiles();
+  NewFiles(const NewFiles&) = delete;
+  NewFiles& operator=(const NewFiles&) = delete;
+
+  /// Where to write a file for now, and where it will be.
+  std::string aside(const std::string& name) const { return (aside_ / name).string(); }
+  std::string place(const std::string& name) const { return (folder_ / name).string(); }
+  /// Puts all in their places, and says which these are.
+  std::vector<std::string> put();
+
+ private:
+  std::filesystem::path folder_, aside_;
+  std::vector<std::string> names_;
+  bool made_ = false;  // the folder, for this
+};
+
+}  // namespace filum
