@@ -76,8 +76,11 @@ struct BlockWriter::Impl {
   soci::session sql;
   int n_tools = 0;
   std::vector<char> bytes;
+  /// The last block of each table.
   struct Ids {
     long long steps = 0, samples = 0, events = 0, array_hashes = 0;
+    /// A finished recording says how many there are: a last one that is lost later leaves no gap to be missed by.
+    std::string json() const { return nlohmann::json({{"steps", steps}, {"samples", samples}, {"events", events}, {"array_hashes", array_hashes}}).dump(); }
   } ids;
 };
 
@@ -145,7 +148,7 @@ void BlockWriter::commit(const Batch& batch) {
 
 void BlockWriter::finish() {
   soci::session& sql = impl_->sql;
-  impl_->put_text("meta", "finished", "true");
+  impl_->put_text("meta", "finished", impl_->ids.json());
   database::pragma(sql, "wal_checkpoint(TRUNCATE)");
   database::pragma(sql, "journal_mode = DELETE");
 }

@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "session/database.h"
+#include "session/journal.h"
 #include "session/recorder.h"
 
 namespace filum {
@@ -72,15 +74,22 @@ class RecordingFile {
     long long hash = 0;
     if (id == kNoMore) return false;
     const long long wanted = id + 1;
+    bool got = false;
     try {
       soci::blob blob(*sql);
       *sql << "SELECT id, count, data, hash FROM " << table << " WHERE id >= " << wanted << " ORDER BY id LIMIT 1",
           soci::into(found), soci::into(stored_count), soci::into(blob), soci::into(hash);
-      if (!sql->got_data()) return false;
-      bytes = database::bytes_of(blob);
+      got = sql->got_data();
+      if (got) bytes = database::bytes_of(blob);
     } catch (const std::exception& error) {
       id = kNoMore;
       damaged(where(table, wanted) + " and those behind it: " + database::reason(error));
+    }
+    if (!got) {
+      const auto end = ends.find(table);
+      if (end == ends.end() || wanted > end->second) return false;
+      id = kNoMore;
+      damaged(where(table, wanted) + (wanted < end->second ? " and those behind it" : "") + " missing");
     }
     if (found != wanted) {
       id = found - 1;
@@ -106,6 +115,9 @@ class RecordingFile {
     return id;
   }
 
+  /// A recording that was not closed has all but its head in its journal.
+  bool journal_lost() const { return !finished && !begun; }
+
   /// What the database itself finds: pages, and texts whose name stands otherwise in the index.
   std::string structure_damage() {
     std::string said;
@@ -121,6 +133,8 @@ class RecordingFile {
   std::string file;
   RecordingMeta meta;
   bool finished = false;
+  bool begun = false;                      // the first commit into the journal is there
+  std::map<std::string, long long> ends;   // last block of each table, where a finished recording says so
   std::vector<SourceFile> sources;
   std::optional<ScoreRecord> score;
   std::vector<std::string> damaged_texts;
@@ -185,10 +199,19 @@ class RecordingFile {
       read_meta(value);
     } else if (kind == "meta" && name == "finished") {
       finished = true;
+      read_ends(value);
+    } else if (kind == "meta" && name == "log") {
+      begun = true;
     } else {
-      return kind == "meta" && name == "log";
+      return false;
     }
     return true;
+  }
+
+  /// "true" from earlier programs, which did not say how much there was.
+  void read_ends(const std::string& text) {
+    const nlohmann::json json = nlohmann::json::parse(text);
+    if (json.is_object()) json.get_to(ends);
   }
 
   void read_meta(const std::string& text) {
@@ -344,6 +367,9 @@ std::vector<std::string> RecordingReader::find_damage() const {
   detail::add_damage(samples(), damage);
   detail::add_damage(events(), damage);
   detail::add_damage(array_hashes(), damage);
+  if (file_->journal_lost()) damage.push_back("neither an end nor a journal (" + file_->file + "-wal), which holds what came after the beginning");
+  if (!file_->finished)
+    if (const std::string lost = journal_damage(file_->file + "-wal"); !lost.empty()) damage.push_back(lost);
   const std::string structure = file_->structure_damage();
   if (!structure.empty()) damage.push_back(structure);
   return damage;

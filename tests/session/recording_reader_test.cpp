@@ -271,6 +271,68 @@ TEST(RecordingReader, AMissingBlockIsFound) {
   EXPECT_THROW(read_whole(folder.file("a")), InputError);
 }
 
+TEST(RecordingReader, AFinishedRecordingMissesItsLastBlocks) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 1000);
+  for (const auto& [table, last] : {std::pair{"steps", "4"}, {"samples", "8"}, {"events", "1"}, {"array_hashes", "1"}}) {
+    const std::string file = folder.file(table);
+    std::filesystem::copy_file(folder.file("a"), file);
+    flip(file, std::string("DELETE FROM ") + table + " WHERE id = " + last);
+    EXPECT_EQ(RecordingReader(file).find_damage(), Damage{std::string(table) + " block " + last + " missing"});
+  }
+  flip(folder.file("a"), "DELETE FROM samples WHERE id > 5");
+  const RecordingReader cut(folder.file("a"));
+  EXPECT_EQ(cut.find_damage(), Damage{"samples block 6 and those behind it missing"});
+  EXPECT_EQ(count_readable(cut.samples()), 5 * 256);
+}
+
+/// Before, "finished" was all that was said.
+TEST(RecordingReader, AnEndThatDoesNotSayHowMuchThereWasIsNoDamage) {
+  const Folder folder;
+  synthetic::write_recording(folder.file("a"), 1000);
+  flip(folder.file("a"), "UPDATE texts SET value = 'true', hash = " + std::to_string(static_cast<long long>(hash_text("true"))) + " WHERE name = 'finished'");
+  EXPECT_TRUE(RecordingReader(folder.file("a")).finished());
+  EXPECT_EQ(RecordingReader(folder.file("a")).find_damage(), Damage{});
+}
+
+/// A recording as a crash leaves it: the file and its journal, without the closing that folds them together.
+void write_killed(const std::string& scratch, const std::string& to) {
+  Recorder recorder(synthetic::options(scratch));
+  for (std::uint64_t i = 1; i <= 600; ++i) {
+    recorder.record_step(synthetic::step(i));
+    if (i % 60 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(25));  // a commit or more each
+  }
+  for (int i = 0; i < 10000 && recorder.status().steps_stored < 600; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_EQ(recorder.status().steps_stored, 600u) << recorder.status().message;
+  std::filesystem::copy_file(scratch, to);
+  std::filesystem::copy_file(scratch + "-wal", to + "-wal");
+}
+
+TEST(RecordingReader, AKilledRecordingWithoutItsJournalIsNoEmptyOne) {
+  const Folder folder;
+  write_killed(folder.file("live"), folder.file("a"));
+  EXPECT_EQ(RecordingReader(folder.file("a")).find_damage(), Damage{});
+  EXPECT_EQ(RecordingReader(folder.file("a")).last_step(), 600u);
+  std::filesystem::copy_file(folder.file("a"), folder.file("b"));
+  const Damage damage = RecordingReader(folder.file("b")).find_damage();
+  ASSERT_EQ(damage.size(), 1u);
+  EXPECT_NE(damage[0].find("journal (" + folder.file("b") + "-wal)"), std::string::npos) << damage[0];
+}
+
+TEST(RecordingReader, AJournalWithAFlippedBitIsNoShorterSession) {
+  const Folder folder;
+  write_killed(folder.file("live"), folder.file("a"));
+  const std::string log = bytes_of(folder.file("a-wal"));
+  std::string flipped = log;
+  flipped[log.size() / 2] = static_cast<char>(flipped[log.size() / 2] ^ 4);
+  write_bytes(folder.file("a-wal"), flipped);
+  const RecordingReader recording(folder.file("a"));
+  EXPECT_LT(recording.last_step(), 600u);
+  const Damage damage = recording.find_damage();
+  ASSERT_EQ(damage.size(), 1u);
+  EXPECT_NE(damage[0].find("with a wrong checksum, and what was recorded after it"), std::string::npos) << damage[0];
+}
+
 TEST(RecordingReader, ACrashedRecordingInAReadOnlyFolderIsRead) {
   const Folder folder;
   const std::string locked = folder.file("locked");

@@ -1,4 +1,4 @@
-foreach(name records recorder recorder_kill recording_reader database block_writer ratings store export_tables export_bids export_files)
+foreach(name records recorder recorder_kill recording_reader database block_writer journal ratings store export_tables export_bids export_files)
   filum_test(session/${name} filum_session)
 endforeach()
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5-serial)
