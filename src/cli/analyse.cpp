@@ -103,12 +103,28 @@ void write(const char* option, const std::string& path, const std::string& text)
   if (!file.flush()) throw InputError(option, "file", path, "a file that can be written");
 }
 
+/// Names all that is damaged in the recordings on `err`, and in `damage`. Exit code: kBadInput where anything is.
+int tell_all_damage(const std::vector<std::string>& files, std::FILE* err, nlohmann::ordered_json& damage) {
+  int code = kDone;
+  damage = nlohmann::ordered_json::array();
+  for (const std::string& file : files) {
+    const std::vector<std::string> found = RecordingReader(file).find_damage();
+    for (const std::string& one : found) damage.push_back(file + ": " + one);
+    code = tell_damage(err, file, found, code);
+  }
+  return code;
+}
+
 int run(const AnalyseOptions& o, const Streams& io) {
   AnalysisInput input;
   for (const std::string& file : o.files) input.sessions.push_back(open_session(file));
   if (!o.clamped.empty()) input.clamped = open_session(o.clamped);
   for (const std::string& file : o.reference) input.reference.push_back(open_session(file));
-  const AnalysisReport report = analyse(input, program_text());
+  AnalysisReport report = analyse(input, program_text());
+  std::vector<std::string> all = o.files;
+  all.insert(all.end(), o.reference.begin(), o.reference.end());
+  if (!o.clamped.empty()) all.push_back(o.clamped);
+  const int code = tell_all_damage(all, io.err, report.json["damage"]);
   if (!o.plot.empty()) write("--plot", o.plot, scatter_svg(report.panels, o.files));
   if (!o.page.empty()) write("--page", o.page, report_page(report));
   if (o.json) {
@@ -116,7 +132,7 @@ int run(const AnalyseOptions& o, const Streams& io) {
   } else {
     print_text(report.json, io);
   }
-  return kDone;
+  return code;
 }
 
 }  // namespace

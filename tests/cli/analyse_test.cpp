@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "altered_recording.h"
 #include "cli/session_files.h"
 #include "program_call.h"
 #include "tests/session/synthetic.h"
@@ -47,6 +48,17 @@ TEST_F(Analyse, ARecordingIsNeverWrittenOver) {
   for (const char* option : {"--plot", "--page"})
     expect_refused({"analyse", folder_.file("one"), option, folder_.file("one")}, {option, folder_.file("one"), "a recording is never written over"});
   EXPECT_EQ(fs::file_size(folder_.file("one")), bytes);
+}
+
+TEST_F(Analyse, DamageBesideWhatItReadsIsTold) {
+  EXPECT_TRUE(call({"analyse", folder_.file("one"), "--json"}).json()["damage"].empty());
+  damage(folder_.file("one"), "latex-card", folder_.file("bad"));
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"analyse", folder_.file("bad"), "--json"}, {"analyse", folder_.file("one"), "--clamped", folder_.file("bad"), "--json"}}) {
+    const Call c = call(words);
+    EXPECT_EQ(c.code, kBadInput);
+    EXPECT_NE(c.err.find(folder_.file("bad") + ": recording: found "), std::string::npos) << c.err;
+    EXPECT_EQ(nlohmann::ordered_json::parse(c.out)["damage"].size(), 1u) << c.out;
+  }
 }
 
 TEST_F(Analyse, ASqueezeThatNoDeviceMeasuredIsTheSimulations) {
