@@ -235,6 +235,7 @@ Check guarded(const char* name, Function check, const char* advice = "Restore th
 }
 
 int run(const DoctorOptions& o, const Streams& io) {
+  if (!o.forceps.empty() && o.serial.empty()) throw InputError("--forceps", "calibration", o.forceps, "--serial PATH beside it");
   std::vector<Check> checks = {
       check_cores(),
       check_timer(),

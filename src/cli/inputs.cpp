@@ -44,7 +44,7 @@ struct HostPort {
 };
 
 /// "18930" or "192.168.1.5:18930"; loopback unless an address is given.
-HostPort host_port(const std::string& text) {
+HostPort host_port(const std::string& text, const char* option) {
   HostPort at;
   const std::size_t colon = text.rfind(':');
   if (colon != std::string::npos) at.address = text.substr(0, colon);
@@ -52,31 +52,31 @@ HostPort host_port(const std::string& text) {
   const auto end = port.data() + port.size();
   const auto read = std::from_chars(port.data(), end, at.port);
   if (read.ec != std::errc{} || read.ptr != end || at.port < 1 || at.port > 65535)
-    throw InputError("--input", "port", text, "a port, or ADDRESS:PORT");
+    throw InputError(option, "port", text, "a port, or ADDRESS:PORT");
   return at;
 }
 
-std::unique_ptr<Device> open_hand_device(const std::string& name, const std::string& calibration) {
+std::unique_ptr<Device> open_hand_device(const std::string& name, const std::string& calibration, const char* option) {
   const auto after = [&](const char* prefix) { return name.substr(std::string(prefix).size()); };
   if (name.starts_with("serial:")) return open_forceps(after("serial:"), calibration);
   if (name.starts_with("haptic:")) {
-    const HostPort at = host_port(after("haptic:"));
+    const HostPort at = host_port(after("haptic:"), option);
     return std::make_unique<HapticLink>(at.address, at.port);
   }
   if (name.starts_with("igtl:")) {
-    const HostPort at = host_port(after("igtl:"));
+    const HostPort at = host_port(after("igtl:"), option);
     return std::make_unique<IgtlTracker>(at.address, at.port);
   }
   return nullptr;
 }
 
-/// Devices that hands move, joined by "+": the first is believed where two measure the same.
-InputDevices open_hands(const std::string& input, double motion_scale, const std::string& calibration) {
+/// Devices that hands move, joined by "+": the first is believed where two measure the same. `option` named them.
+InputDevices open_hands(const std::string& input, double motion_scale, const std::string& calibration, const char* option) {
   InputDevices result;
   for (std::size_t from = 0; from <= input.size();) {
     const std::size_t plus = std::min(input.find('+', from), input.size());
-    auto device = open_hand_device(input.substr(from, plus - from), calibration);
-    if (!device) throw InputError("--input", "input", input.substr(from, plus - from), "serial:PATH, haptic:PORT or igtl:PORT");
+    auto device = open_hand_device(input.substr(from, plus - from), calibration, option);
+    if (!device) throw InputError(option, "device", input.substr(from, plus - from), "serial:PATH, haptic:PORT or igtl:PORT");
     if (input.compare(from, 7, "serial:") == 0) result.calibration = calibration;
     result.description += (result.description.empty() ? "" : " and ") + device->name();
     result.devices.push_back(std::move(device));
@@ -107,7 +107,7 @@ bool names_hands(const std::string& input) {
 
 InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task, double motion_scale, const std::string& calibration) {
   if (!calibration.empty() && input.find("serial:") == std::string::npos) throw InputError("--forceps", "calibration", calibration, "--input serial:PATH beside it");
-  if (names_hands(input)) return open_hands(input, motion_scale, calibration_file(calibration, root));
+  if (names_hands(input)) return open_hands(input, motion_scale, calibration_file(calibration, root), "--input");
   InputDevices result;
   result.scripted = true;
   if (input == "demo") {
@@ -133,7 +133,7 @@ InputDevices open_live_inputs(const LiveDevices& devices, const std::string& roo
   const std::string calibration = calibration_file(devices.calibration, root);
   InputDevices result;
   if (!devices.hands.empty()) {
-    result = open_hands(devices.hands, devices.motion_scale, calibration);
+    result = open_hands(devices.hands, devices.motion_scale, calibration, "--hands");
     if (devices.serial_port.empty()) return result;
     result.devices.push_back(open_forceps(devices.serial_port, calibration));
     result.calibration = calibration;

@@ -23,13 +23,29 @@ bool known(const CLI::App& app, const std::string& word) {
   return std::any_of(subcommands.begin(), subcommands.end(), [&](const CLI::App* sub) { return sub->get_name() == word; });
 }
 
+/// An empty value, as of a script's variable that was not set, would be taken for an option that was not given.
+void require_values(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options([](const CLI::Option*) { return true; }))
+    for (const std::string& text : option->results())
+      if (text.empty()) throw InputError(option->get_name(), "value", "nothing", "a value, or no " + option->get_name());
+  for (const CLI::App* chosen : app.get_subcommands()) require_values(*chosen);
+}
+
+/// "filum calibrate forceps", as far as it was understood.
+std::string command_line_of(const CLI::App& app) {
+  std::string words = app.get_name();
+  for (const CLI::App* chosen : app.get_subcommands()) words += " " + command_line_of(*chosen);
+  return words;
+}
+
 /// Help on io.out, faults on io.err.
 int explain(const CLI::App& app, const CLI::ParseError& error, const Streams& io) {
   std::ostringstream out, err;
   const int code = app.exit(error, out, err);
   std::fputs(out.str().c_str(), io.out);
-  std::fputs(err.str().c_str(), io.err);
-  return code == 0 ? kDone : kBadInput;
+  if (code == 0) return kDone;
+  std::fprintf(io.err, "filum: %s (`%s --help` tells what is expected)\n", error.what(), command_line_of(app).c_str());
+  return kBadInput;
 }
 
 }  // namespace
@@ -48,6 +64,7 @@ int program(int argc, const char* const* argv, const Streams& io) {
     return explain(app, error, io);
   }
   try {
+    require_values(app);
     const int code = action.run(io);
     if (std::fflush(io.out) == 0 && std::ferror(io.out) == 0) return code;
     std::fprintf(io.err, "filum: output: found an error (a full disk, a closed pipe), expected that all of it can be written\n");

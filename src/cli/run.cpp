@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "cli/live_session.h"
 #include "cli/number_range.h"
 #include "cli/options.h"
@@ -57,6 +58,7 @@ nlohmann::ordered_json json_of(const DeviceOutcome& d) {
 }
 
 int run(const RunOptions& o, const Streams& io) {
+  if (!o.code.empty() && o.record.empty()) throw InputError("--code", "participant", o.code, "--record FILE beside it");
   Setup setup = load_setup(o.common.root, o.task, o.model, o.stiffness);
   InputDevices inputs = open_inputs(o.input, o.common.root, o.task, o.motion_scale, o.forceps);
   std::unique_ptr<Recorder> recorder;

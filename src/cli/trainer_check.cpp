@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "cli/inputs.h"
 #include "cli/setup.h"
 
@@ -35,6 +36,15 @@ void check_viewer(const TrainerOptions& options) {
   throw InputError("--viewer", "index.html", "none in " + options.viewer_folder, "the folder of the built viewer (./filum builds it)");
 }
 
+/// Numbered pictures are no file of their name: their folder is looked for.
+void check_camera(const std::string& source) {
+  const bool camera = source.find_first_not_of("0123456789") == std::string::npos;  // none given, too
+  const bool numbered = source.find('%') != std::string::npos;
+  const std::filesystem::path folder = std::filesystem::path(source).parent_path();
+  if (camera || (numbered ? folder.empty() || is_folder(folder) : is_there(source) && !is_folder(source))) return;
+  throw InputError("--camera", "source", source, "a video that is there, pictures like view_%03d.png in a folder that is, or the number of a camera");
+}
+
 /// Opened and let go again: the sessions open them anew.
 void check_devices(const TrainerOptions& options) {
   if (!options.calibration.empty() && options.serial_port.empty()) throw InputError("--forceps", "calibration", options.calibration, "--serial PATH beside it");
@@ -49,6 +59,7 @@ void check_trainer_options(const TrainerOptions& options) {
   check_model(options);
   check_viewer(options);
   check_devices(options);
+  check_camera(options.camera);
 }
 
 }  // namespace filum

@@ -136,6 +136,10 @@ TEST_F(Doctor, AHandleIsListenedTo) {
   EXPECT_NE(silent["handle"]["detail"].get<std::string>().find("says nothing"), std::string::npos) << silent["handle"];
 }
 
+TEST_F(Doctor, ACalibrationWithoutItsHandleIsRefused) {
+  expect_refused({"doctor", "--forceps", folder_.file("forceps.yaml")}, {"--forceps", folder_.file("forceps.yaml"), "expected --serial PATH beside it"});
+}
+
 TEST_F(Doctor, TextMarksWhatIsWrong) {
   const Call c = call({"doctor", "--store", folder_.file("store"), "--viewer", folder_.file("none")});
   EXPECT_EQ(c.code, kFailed);

@@ -94,6 +94,20 @@ TEST(Inputs, LiveWithoutDevicesIsThePointer) {
   EXPECT_EQ(open_live_inputs(hands, FILUM_SOURCE_DIR).pointer, nullptr);
 }
 
+TEST(Inputs, ARefusalNamesTheOptionThatWasGiven) {
+  LiveDevices live;
+  for (const char* hands : {"mouse", "haptic:none"}) {
+    EXPECT_EQ(refusal(std::string("igtl:18945+") + hands).find("--input: "), 0u);
+    live.hands = hands;
+    try {
+      open_live_inputs(live, FILUM_SOURCE_DIR);
+      ADD_FAILURE() << hands << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.file, "--hands");
+    }
+  }
+}
+
 TEST(Inputs, EveryStateOfADeviceHasAName) {
   for (const auto& [state, name] : {std::pair{DeviceState::waiting, "waiting"}, {DeviceState::live, "live"}, {DeviceState::stale, "stale"}, {DeviceState::lost, "lost"}, {DeviceState::finished, "finished"}})
     EXPECT_STREQ(name_of(state), name);

@@ -26,9 +26,16 @@ TEST(Program, EveryCommandExplainsItselfAndIsListed) {
 TEST(Program, WhatItDoesNotKnowIsBadInputAndSaidOnStderr) {
   expect_refused({}, {"subcommand"});
   expect_refused({"nonsense"}, {"found nonsense", "expected one of those that `filum --help` lists"});
-  expect_refused({"list", "--jsn"}, {"--jsn"});
+  expect_refused({"list", "--jsn"}, {"filum: ", "--jsn", "(`filum list --help` tells what is expected)"});
+  expect_refused({"calibrate", "forceps"}, {"--out is required (`filum calibrate forceps --help`"});
   expect_refused({"score"}, {"file"});
   expect_refused({"run", "tip-hold", "--motion-scale", "0"}, {"--motion-scale"});
+}
+
+/// As of a script's variable that was not set.
+TEST(Program, AnOptionWithoutAValueIsNotTakenForNoOption) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", "tip-hold", "--record", ""}, {"run", "tip-hold", "--model", ""}, {"train", "--store", ""}, {"replay", ""}, {"calibrate", "forceps", "--out", ""}})
+    expect_refused(words, {words.size() == 2 ? "file" : words[words.size() - 2], "found nothing, expected a value"});
 }
 
 TEST(Program, NumbersThatAreNoneAreRefused) {

@@ -91,6 +91,8 @@ TEST(Run, WhatIsWrongIsNamedWithWhatWasExpected) {
   expect_refused({"run", "tip-hold", "--record", kept}, {kept, "expected"});
   expect_refused({"run", "tip-hold", "--record", folder.file("new"), "--code", "Jane Doe"}, {"Jane Doe", "expected"});
   expect_refused({"run", "tip-hold", "--stiffness", "2"}, {"--stiffness", "expected a task of brain retraction"});
+  expect_refused({"run", "tip-hold", "--code", "P01"}, {"--code", "found P01", "expected --record FILE beside it"});
+  for (const char* option : {"--record", "--model", "--forceps"}) expect_refused({"run", "tip-hold", option, ""}, {option, "found nothing", "expected"});
   std::string text;
   std::getline(std::ifstream(kept), text);
   EXPECT_EQ(text, "another's");

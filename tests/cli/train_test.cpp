@@ -68,7 +68,7 @@ TEST(Train, WhatItCannotServeFromIsNamedBeforeItServes) {
   expect_train_refused(folder, {"--address", "no address"}, {"--address", "found no address", "127.0.0.1"});
   expect_train_refused(folder, {"--port", "70000"}, {"--port"});
   expect_train_refused(folder, {"--model", folder.file("model.yaml")}, {"--model", "model.yaml", "expected a model that a task can take"});
-  expect_train_refused(folder, {"--hands", "mouse:1"}, {"mouse:1", "haptic:PORT"});
+  expect_train_refused(folder, {"--hands", "mouse:1"}, {"--hands", "mouse:1", "haptic:PORT"});
   expect_train_refused(folder, {"--motion-scale", "0"}, {"--motion-scale"});
 }
 
@@ -80,6 +80,7 @@ TEST(Train, FilesAndPortsThatAreNotThereAreNamedBeforeItServes) {
   expect_train_refused(folder, {"--serial", folder.file("text")}, {folder.file("text"), "serial port", "expected a serial port"});
   expect_train_refused(folder, {"--serial", folder.file("none"), "--forceps", folder.file("text")}, {folder.file("text")});
   expect_train_refused(folder, {"--forceps", folder.file("text")}, {"--forceps", folder.file("text"), "expected --serial"});
+  for (const char* source : {"none.avi", "empty", "none/view_%03d.png"}) expect_train_refused(folder, {"--camera", folder.file(source)}, {"--camera", folder.file(source), "expected a video that is there"});
   expect_train_refused(folder, {"--root", folder.file("nowhere")}, {"--root", folder.file("nowhere"), "expected a folder with models/ and curricula/"});
   expect_refused({"train", "--port", "0", "--store", folder.file("store"), "--viewer", folder.file("nowhere")}, {"--viewer", "index.html", folder.file("nowhere"), "expected the folder of the built viewer"});
   expect_refused({"train", "--port", "0", "--store", folder.file("store"), "--viewer", folder.file("empty")}, {"--viewer", "index.html"});
