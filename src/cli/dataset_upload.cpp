@@ -29,7 +29,7 @@ constexpr const char* kHalfSent = ".upload-";
 /// Names of folders and files that mean the same everywhere, and nothing to a shell or a path.
 const std::string& plain(const Json& object, const char* key) {
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.'; };
-  if (!object.is_object() || !object.contains(key) || !object[key].is_string()) throw InputError("upload", key, "nothing", "a name");
+  if (!object.is_object() || !object.contains(key) || !object[key].is_string()) throw InputError("upload", key, json_shown_at(object, key), "a name");
   const auto& name = object[key].get_ref<const std::string&>();
   if (name.empty() || name.size() > 64 || name[0] == '.' || !std::all_of(name.begin(), name.end(), allowed))
     throw InputError("upload", key, json_shown(object[key]), "1 to 64 letters, digits, dots, - and _, no dot first");
@@ -43,7 +43,7 @@ std::size_t size_of(const Json& file) {
 
 unsigned long number_in(const std::string& body) {
   const Json json = parsed_json(body);
-  if (!json.is_object() || !json.contains("upload") || !json["upload"].is_number_unsigned()) throw InputError("upload", "upload", "nothing", "the number of an upload");
+  if (!json.is_object() || !json.contains("upload") || !json["upload"].is_number_unsigned()) throw InputError("upload", "upload", json_shown_at(json, "upload"), "the number of an upload");
   return json["upload"].get<unsigned long>();
 }
 

@@ -14,7 +14,7 @@ struct TooDeep {};
 constexpr int kMostPoints = 100;  // of an item of a scale
 
 std::vector<ItemMark> marks_of(const Json& scale, const Json& given) {
-  if (!given.is_object()) throw InputError("rating", "marks", "nothing", "points for every item");
+  if (!given.is_object()) throw InputError("rating", "marks", given.is_null() ? "nothing" : json_shown(given), "points for every item");
   const Json& high = scale.at("most");
   if (!high.is_number_unsigned() || high > kMostPoints) throw InputError("scale", "most", json_shown(high), "a whole number from 1 to " + std::to_string(kMostPoints));
   const int most = high.get<int>();
@@ -22,7 +22,7 @@ std::vector<ItemMark> marks_of(const Json& scale, const Json& given) {
   for (const Json& item : scale.at("items")) {
     const auto name = item.at("name").get<std::string>();
     const std::string expected = "a whole number from 0 to " + std::to_string(most);
-    if (!given.contains(name) || !given[name].is_number_integer()) throw InputError("rating", name, given.contains(name) ? json_shown(given[name]) : "nothing", expected);
+    if (!given.contains(name) || !given[name].is_number_integer()) throw InputError("rating", name, json_shown_at(given, name), expected);
     const auto points = given[name].get<std::int64_t>();
     if (points < 0 || points > most) throw InputError("rating", name, std::to_string(points), expected);
     marks.push_back({name, static_cast<int>(points)});
@@ -50,15 +50,17 @@ std::string json_text(const Json& document) { return document.dump(-1, ' ', fals
 
 std::string json_shown(const Json& value) { return json_text(value).substr(0, 80); }
 
+std::string json_shown_at(const Json& object, const std::string& name) { return object.is_object() && object.contains(name) ? json_shown(object[name]) : "nothing"; }
+
 std::string requested_text(const std::string& body, const char* name) {
   const Json json = parsed_json(body);
-  if (!json.is_object() || !json.contains(name) || !json[name].is_string()) throw InputError("request", name, "nothing", "a text");
+  if (!json.is_object() || !json.contains(name) || !json[name].is_string()) throw InputError("request", name, json_shown_at(json, name), "a text");
   return json[name].get<std::string>();
 }
 
 std::vector<std::string> requested_names(const std::string& body, const char* name) {
   const Json json = parsed_json(body);
-  if (!json.is_object() || !json.contains(name) || !json[name].is_array()) throw InputError("request", name, "nothing", "a list of sessions");
+  if (!json.is_object() || !json.contains(name) || !json[name].is_array()) throw InputError("request", name, json_shown_at(json, name), "a list of sessions");
   std::vector<std::string> list;
   for (const Json& one : json[name]) {
     if (!one.is_string()) throw InputError("request", name, json_shown(one), "identifiers of sessions");
@@ -70,7 +72,7 @@ std::vector<std::string> requested_names(const std::string& body, const char* na
 Rating requested_rating(const std::string& session, const std::string& task, const Json& scale, const std::string& body) {
   if (scale.is_null()) throw InputError("rating", "scale", "none", "a session of a task that has a rating scale");
   const Json wish = parsed_json(body);
-  if (!wish.is_object() || !wish.contains("rater") || !wish["rater"].is_string()) throw InputError("rating", "rater", "nothing", "the rater's code");
+  if (!wish.is_object() || !wish.contains("rater") || !wish["rater"].is_string()) throw InputError("rating", "rater", json_shown_at(wish, "rater"), "the rater's code");
   Rating r{session, task, scale.at("name").get<std::string>(), wish["rater"].get<std::string>(), "", {}};
   r.marks = marks_of(scale, wish.contains("marks") ? wish["marks"] : Json(nullptr));
   return r;

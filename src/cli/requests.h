@@ -18,6 +18,8 @@ nlohmann::ordered_json parsed_json(const std::string& text);
 std::string json_text(const nlohmann::ordered_json& document);
 /// What was found in place of something else: at most 80 bytes.
 std::string json_shown(const nlohmann::ordered_json& value);
+/// The same of what stands under a name; "nothing" where there is no such name.
+std::string json_shown_at(const nlohmann::ordered_json& object, const std::string& name);
 
 /// A text, or a list of texts, of a request's object. Throw InputError.
 std::string requested_text(const std::string& body, const char* name);

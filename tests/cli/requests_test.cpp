@@ -22,6 +22,26 @@ TEST(Requests, AnObjectsTextsAreReadOrRefused) {
   for (const char* body : {R"({"sessions":"a"})", R"({"sessions":[1]})"}) EXPECT_THROW(requested_names(body, "sessions"), InputError) << body;
 }
 
+template <class Read>
+std::string found_in(const Read& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    return error.value;
+  }
+  return "taken";
+}
+
+TEST(Requests, WhatIsOfAnotherTypeIsShown) {
+  EXPECT_EQ(found_in([] { requested_text(R"({"dataset":1})", "dataset"); }), "1");
+  EXPECT_EQ(found_in([] { requested_text(R"({"other":1})", "dataset"); }), "nothing");
+  EXPECT_EQ(found_in([] { requested_text("[1]", "dataset"); }), "nothing");
+  EXPECT_EQ(found_in([] { requested_names(R"({"sessions":"a"})", "sessions"); }), "\"a\"");
+  const nlohmann::ordered_json scale = {{"name", "mars10"}, {"most", 2}, {"items", nlohmann::ordered_json::array()}};
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scale, R"({"rater":7,"marks":{}})"); }), "7");
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scale, R"({"rater":"R1","marks":3})"); }), "3");
+}
+
 TEST(Requests, JsonDeeperThanTheLimitIsNone) {
   EXPECT_TRUE(parsed_json(nested(kJsonDepth)).is_array());
   EXPECT_TRUE(parsed_json(nested(kJsonDepth + 1)).is_discarded());
