@@ -108,8 +108,10 @@ Channel read_channel(const YamlNode& node, Rig rig) {
 void read_channels(const YamlNode& file, Dataset& d) {
   for (const YamlNode& node : file.items("channels")) {
     Channel c = read_channel(node, d.rig);
-    for (const Channel& other : d.channels)
+    for (const Channel& other : d.channels) {
       if (other.name == c.name) node.refuse("name", "each channel once");
+      if (other.column == c.column) node.refuse(node.has("column") ? "column" : "name", "a column of its own, not that of " + other.name);
+    }
     if (!c.input) d.outputs.push_back(c.name);
     d.channels.push_back(std::move(c));
   }
@@ -118,6 +120,19 @@ void read_channels(const YamlNode& file, Dataset& d) {
     if (k.required && !there) file.refuse("channels", "a channel named " + k.name);
   }
   if (d.outputs.empty()) file.refuse("channels", "at least one output of " + info(d.rig).name);
+}
+
+/// A path beside experiment.yaml, else the name of a file below models/, with a parameter of the rig.
+YamlNode load_model_file(const YamlNode& model, const Dataset& d, const std::string& root) {
+  fs::path path = fs::path(d.folder) / d.model;
+  if (!is_file(path)) path = fs::path(root) / "models" / (d.model + ".yaml");
+  if (!is_file(path)) path = fs::path(root) / "models" / d.model;
+  if (!is_file(path)) model.refuse("file", "a model below " + (fs::path(root) / "models").string() + ", e.g. " + info(d.rig).model + " (there is no such file), or a path beside experiment.yaml");
+  YamlNode values = YamlNode::load(path.string());
+  const auto& wanted = info(d.rig).baseline;
+  if (!wanted.empty() && std::none_of(wanted.begin(), wanted.end(), [&](const ParameterInfo& p) { return values.has(p.name); }))
+    model.refuse("file", "a model of " + info(d.rig).name + ", with " + wanted[0].name + ", e.g. " + info(d.rig).model);
+  return values;
 }
 
 void read_model(const YamlNode& file, Dataset& d, const std::string& root) {
@@ -147,11 +162,7 @@ void read_model(const YamlNode& file, Dataset& d, const std::string& root) {
       d.prior[name] = {range[0], range[1]};
     }
   }
-  fs::path path = fs::path(d.folder) / d.model;
-  if (!is_file(path)) path = fs::path(root) / "models" / (d.model + ".yaml");
-  if (!is_file(path)) path = fs::path(root) / "models" / d.model;
-  if (!is_file(path)) model.refuse("file", "a model below " + (fs::path(root) / "models").string() + ", e.g. " + info(d.rig).model + " (there is no such file), or a path beside experiment.yaml");
-  const YamlNode values = YamlNode::load(path.string());
+  const YamlNode values = load_model_file(model, d, root);
   for (const ParameterInfo& p : info(d.rig).baseline) {
     if (!values.has(p.name)) continue;
     try {
@@ -330,6 +341,7 @@ void read_trials(const YamlNode& file, Dataset& d) {
   const auto held = std::count_if(d.trials.begin(), d.trials.end(), [](const Trial& t) { return t.hold_out; });
   if (held == static_cast<std::ptrdiff_t>(d.trials.size())) file.refuse("trials", "at least one trial that is not held out");
   check_constant(d);
+  check_noise(d);
   if (d.trials.size() == 1) d.note("one trial only: nothing can be held out, and evidence comes from a single record");
   std::map<std::string, int> letters;
   for (const Trial& t : d.trials)

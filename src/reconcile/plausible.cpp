@@ -199,4 +199,18 @@ void check_constant(Dataset& d) {
   }
 }
 
+void check_noise(const Dataset& d) {
+  constexpr double kMost = 10.0;  // of a channel's range: noise alone spans some two of its standard deviations in four samples
+  for (const Channel& c : d.channels) {
+    if (c.noise <= 0.0 || c.name == "time") continue;
+    double low = INFINITY, high = -INFINITY;
+    for (const Trial& t : d.trials)
+      for (const double x : t.at(c.name))
+        if (std::isfinite(x)) low = std::min(low, x), high = std::max(high, x);
+    if (!(high > low) || c.noise <= kMost * (high - low)) continue;
+    throw InputError((fs::path(d.folder) / "experiment.yaml").string(), "noise of channel " + c.name, number(c.noise / c.scale) + " " + c.unit,
+                     "at most ten times the range of its samples, " + number((high - low) / c.scale) + " " + c.unit + " (is the unit right?)");
+  }
+}
+
 }  // namespace filum::reconcile

@@ -25,4 +25,7 @@ void check_samples(Dataset& d, const Trial& t, const CsvTable& table);
 /// measure is left out.
 void check_constant(Dataset& d);
 
+/// Over all trials: a stated noise far beyond all that its channel ever says, beside which nothing could be seen.
+void check_noise(const Dataset& d);
+
 }  // namespace filum::reconcile
