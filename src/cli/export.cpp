@@ -42,7 +42,7 @@ std::vector<Table> readable_tables(const RecordingReader& recording, bool damage
 
 int run(const ExportOptions& o, const Streams& io) {
   require_out_folder("--out", o.folder);
-  if (o.format != "bids") require_no_export(o.folder);  // before the recording is stepped again
+  if (o.format != "bids") require_no_export(o.folder, o.format);  // before the recording is stepped again
   const RecordingReader recording(o.file);
   const std::vector<std::string> damage = recording.find_damage();
   std::vector<std::string> files;

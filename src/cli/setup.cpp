@@ -9,6 +9,7 @@
 #include "world/brain_model.h"
 #include "world/model.h"
 #include "world/task_folder.h"
+#include "world/vessel_model.h"
 
 namespace filum {
 namespace {

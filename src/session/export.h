@@ -32,8 +32,8 @@ std::vector<Table> recorded_tables(const RecordingReader& recording);
 /// tension. "simulated".
 Table simulated_table(const RecordingReader& recording, World& world);
 
-/// Throws InputError where `folder` holds an export as CSV or HDF5: none is written over.
-void require_no_export(const std::string& folder);
+/// Throws InputError where `folder` holds an export of this format, csv or hdf5: none is written over. Both may lie in one folder, with one dictionary.
+void require_no_export(const std::string& folder, const std::string& format);
 
 /// One NAME.csv for each table and data-dictionary.csv (file, column, unit, rate_hz, meaning) in `folder`,
 /// which is made. Returns the files written: all, or none with an exception. Throws InputError when the folder cannot be written or

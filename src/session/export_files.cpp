@@ -6,9 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <span>
 #include <stdexcept>
 
+#include "base/error.h"
 #include "session/export.h"
 #include "session/new_files.h"
 
@@ -16,7 +18,8 @@ namespace filum {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kDictionary = "data-dictionary.csv";  // of every export
+constexpr const char* kDictionary = "data-dictionary.csv";  // of all exports in a folder
+constexpr const char* kHdf5 = "recording.h5";
 
 std::size_t length(const Column& column) {
   return std::visit([](const auto& values) { return values.size(); }, column.values);
@@ -97,11 +100,19 @@ void write_table(const Table& table, const NewFiles& files) {
   file.close();
 }
 
+/// Goes on where that of another format in the folder ends.
 class Dictionary {
  public:
   explicit Dictionary(const NewFiles& files) : file_(files, kDictionary) {
-    std::string line = "file,column,unit,rate_hz,meaning";
-    file_.line(line);
+    std::string head = "file,column,unit,rate_hz,meaning";
+    std::ifstream before(files.place(kDictionary), std::ios::binary);
+    const std::string rows((std::istreambuf_iterator<char>(before)), std::istreambuf_iterator<char>());
+    if (rows.starts_with(head + "\r\n"))
+      file_.write(rows);
+    else if (rows.empty())
+      file_.line(head);
+    else
+      throw InputError(files.place(kDictionary), "export", "a file that is no dictionary of an export", "a folder without it");
   }
   void add(const Table& table, const std::string& where) {
     std::string line;
@@ -251,7 +262,7 @@ Table about_of(const RecordingMeta& meta) {
 
 }  // namespace
 
-void require_no_export(const std::string& folder) { require_unused(fs::path(folder) / kDictionary); }
+void require_no_export(const std::string& folder, const std::string& format) { require_unused(fs::path(folder) / (format == "hdf5" ? kHdf5 : "recording.csv")); }
 
 std::vector<std::string> export_csv(const std::vector<Table>& tables, const RecordingMeta& meta,
                                     const std::string& folder) {
@@ -261,8 +272,7 @@ std::vector<std::string> export_csv(const std::vector<Table>& tables, const Reco
   all.push_back(&about);
   std::vector<std::string> names;
   for (const Table* table : all) names.push_back(table->name + ".csv");
-  names.emplace_back(kDictionary);
-  NewFiles files(folder, names);
+  NewFiles files(folder, names, kDictionary);
   Dictionary dictionary(files);
   for (const Table* table : all) {
     write_table(*table, files);
@@ -274,8 +284,8 @@ std::vector<std::string> export_csv(const std::vector<Table>& tables, const Reco
 
 std::vector<std::string> export_hdf5(const std::vector<Table>& tables, const RecordingMeta& meta,
                                      const std::string& folder) {
-  const std::string name = "recording.h5";
-  NewFiles files(folder, {name, kDictionary});
+  const std::string name = kHdf5;
+  NewFiles files(folder, {name}, kDictionary);
   Hdf5File file(files.place(name));
   file.attribute("task", meta.task);
   file.attribute("participant", meta.participant);

@@ -17,11 +17,12 @@ void require_unused(const fs::path& path) {
   if (is_there(path)) throw InputError(path.string(), "export", "a file that exists", "a folder without it: an export is never written over");
 }
 
-NewFiles::NewFiles(const std::string& folder, std::vector<std::string> names) : folder_(folder), names_(std::move(names)) {
+NewFiles::NewFiles(const std::string& folder, std::vector<std::string> names, std::string shared) : folder_(folder), names_(std::move(names)) {
   std::error_code error;
   made_ = fs::create_directories(folder_, error);
   if (!is_folder(folder_)) throw InputError(folder, "export", error.message(), "a folder that can be made");
   for (const std::string& name : names_) require_unused(folder_ / name);
+  names_.push_back(std::move(shared));
   std::string aside = (folder_ / ".export-XXXXXX").string();
   if (::mkdtemp(aside.data()) == nullptr) {
     if (errno == ENOSPC) throw_unwritten(folder);

@@ -15,8 +15,9 @@ void require_unused(const std::filesystem::path& path);
 
 class NewFiles {
  public:
-  /// For `names` in `folder`, which is made. Throws InputError where that cannot be, or where one of them is there already.
-  NewFiles(const std::string& folder, std::vector<std::string> names);
+  /// For `names` in `folder`, which is made, and `shared`, which may be there already and is then replaced. Throws InputError where that cannot be, or where one of the
+  /// others is there.
+  NewFiles(const std::string& folder, std::vector<std::string> names, std::string shared);
   /// Leaves nothing that was not put in its place.
   ~NewFiles();
   NewFiles(const NewFiles&) = delete;

@@ -64,9 +64,10 @@ TEST_F(Export, AWrongFormatFileOrFolderIsNamed) {
 }
 
 TEST_F(Export, AnExportThatIsThereIsNotWrittenOver) {
-  files("csv");
-  for (const char* format : {"csv", "hdf5"})
-    expect_refused({"export", folder_.file("one"), "--format", format, "--out", folder_.file("csv")}, {folder_.file("csv"), "a file that exists", "an export is never written over"});
+  for (const char* format : {"csv", "hdf5"}) {
+    files(format);
+    expect_refused({"export", folder_.file("one"), "--format", format, "--out", folder_.file(format)}, {folder_.file(format), "a file that exists", "an export is never written over"});
+  }
   files("bids");
   EXPECT_FALSE(files("bids").empty()) << "a dataset is joined";
 }

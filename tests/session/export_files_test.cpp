@@ -213,19 +213,40 @@ TEST(Export, OfAnExportOntoAFullDiskNothingIsLeft) {
 
 TEST(Export, AnExportIsNeverWrittenOver) {
   const synthetic::Folder folder;
-  EXPECT_NO_THROW(require_no_export(folder.file("a")));
   for (const Exporter exporter : kExporters) {
-    const std::string name = folder.file(exporter == export_csv ? "csv" : "hdf5");
+    const std::string format = exporter == export_csv ? "csv" : "hdf5", name = folder.file(format);
+    EXPECT_NO_THROW(require_no_export(name, format));
     exporter(odd_tables(), synthetic::meta(), name);
     const auto before = names_in(name);
-    EXPECT_THROW(require_no_export(name), InputError);
-    for (const Exporter second : kExporters) EXPECT_NE(failure(second, name).find("bad input: "), std::string::npos) << "both have a dictionary";
+    EXPECT_THROW(require_no_export(name, format), InputError);
+    EXPECT_NE(failure(exporter, name).find("bad input: "), std::string::npos);
     EXPECT_EQ(names_in(name), before);
   }
   std::filesystem::create_directory(folder.file("other"));
   std::ofstream(folder.file("other/long.csv")) << "somebody's own";
   EXPECT_NE(failure(export_csv, folder.file("other")).find("long.csv: export: found a file that exists"), std::string::npos);
   EXPECT_EQ(names_in(folder.file("other")), std::vector<std::string>{"long.csv"});
+  std::filesystem::create_directory(folder.file("third"));
+  std::ofstream(folder.file("third/data-dictionary.csv")) << "somebody's own";
+  EXPECT_NE(failure(export_hdf5, folder.file("third")).find("no dictionary of an export"), std::string::npos);
+  EXPECT_EQ(names_in(folder.file("third")), std::vector<std::string>{"data-dictionary.csv"});
+}
+
+TEST(Export, BothFormatsShareAFolderAndItsDictionary) {
+  const synthetic::Folder folder;
+  const auto rows = [&](const char* name) {
+    std::ifstream file(folder.file(name) + "/data-dictionary.csv");
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(file, line);) lines.push_back(line);
+    return lines;
+  };
+  for (const Exporter exporter : kExporters) {
+    exporter(odd_tables(), synthetic::meta(), folder.file("both"));
+    exporter(odd_tables(), synthetic::meta(), folder.file(exporter == export_csv ? "csv" : "hdf5"));
+  }
+  std::vector<std::string> expected = rows("csv"), more = rows("hdf5");
+  expected.insert(expected.end(), more.begin() + 1, more.end());
+  EXPECT_EQ(rows("both"), expected);
 }
 
 }  // namespace export_files_test
