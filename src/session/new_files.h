@@ -23,7 +23,7 @@ class NewFiles {
   NewFiles(const NewFiles&) = delete;
   NewFiles& operator=(const NewFiles&) = delete;
 
-  /// Where to write a file for now, and where it will be.
+  /// Where a file is written until all are whole, and where it will be.
   std::string aside(const std::string& name) const { return (aside_ / name).string(); }
   std::string place(const std::string& name) const { return (folder_ / name).string(); }
   /// Puts all in their places, and says which these are.
