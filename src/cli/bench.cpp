@@ -11,13 +11,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/error.h"
 #include "cli/driven_task.h"
 #include "cli/number_range.h"
 #include "cli/options.h"
 #include "cli/setup.h"
+#include "evidence/sewn_bench.h"
 #include "evidence/wild_hands.h"
 #include "world/model.h"
 #include "world/state.h"
+#include "world/vessel_model.h"
 
 namespace filum {
 namespace {
@@ -29,6 +32,7 @@ struct BenchOptions {
   std::vector<std::string> names;
   int wild = 0;              // seeds of violent hands instead of benches
   double wild_seconds = 0.6;  // [s], scene time of each
+  int wild_sewn = 0;          // stitches by construction that they find in a vessel
 };
 
 /// One task of every kind of scene.
@@ -86,12 +90,21 @@ void print_line(const BenchResult& r, const Streams& io) {
   std::fflush(io.out);
 }
 
+/// Two vessels whose cut edges face each other, as evidence/sewn_bench.h sews them.
+bool two_stumps(const Model& model) {
+  if (!model.vessel || !model.vessel->lumen) return false;
+  const std::vector<int>& sectors = model.vessel->mesh.sectors;
+  return sectors.size() == 2 && sectors[0] > 0 && sectors[1] > 0;
+}
+
 /// Whether scenes survive hands that do anything, and how late their steps were.
 nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o) {
   using Json = nlohmann::ordered_json;
   const Setup setup = load_setup(o.common.root, task);
-  World world(setup.model);
-  const State first = world.state();
+  if (o.wild_sewn > 0 && !two_stumps(*setup.model)) throw InputError("bench", "--wild-sewn", "task " + task, "a task with two vessels end to end");
+  const auto sewn = o.wild_sewn > 0 ? sewn_stumps(setup.model, o.wild_sewn) : std::pair(setup.model, State());
+  World world(sewn.first);
+  const State first = o.wild_sewn > 0 ? sewn.second : world.state();
   WildRun worst;
   std::uint64_t steps = 0;
   Json faults = Json::array();
@@ -105,9 +118,10 @@ nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o)
     worst.late += run.late;
     worst.trouble += run.trouble;
     worst.apart = std::max(worst.apart, run.apart);
+    worst.buried = std::max(worst.buried, run.buried);
   }
   return {{"task", task}, {"seeds", o.wild}, {"steps", steps}, {"scene_s", static_cast<double>(steps) * setup.model->description.dt}, {"faults", faults}, {"fastest_m_per_s", worst.fastest},
-          {"deepest_share", worst.deepest}, {"longest_step_ms", worst.slowest_ms}, {"late_steps", worst.late}, {"solver_trouble_events", worst.trouble}, {"apart_steps", worst.apart}};
+          {"deepest_share", worst.deepest}, {"longest_step_ms", worst.slowest_ms}, {"late_steps", worst.late}, {"solver_trouble_events", worst.trouble}, {"apart_steps", worst.apart}, {"buried_steps", worst.buried}};
 }
 
 int run_wild_hands(const BenchOptions& o, const Streams& io) {
@@ -150,6 +164,7 @@ void add_bench(CLI::App& app, Action& action) {
                       "Benches to run, by name or beginning of the name up to a hyphen (default: all)");
   command->add_option("--wild", o->wild, "Instead: so many seeds of violent random hands on the tasks named (default: one of every kind)")->check(CLI::Range(1, 1000000));
   command->add_option("--wild-seconds", o->wild_seconds, "Scene time of each seed")->check(between(0.01, 3600.0));
+  command->add_option("--wild-sewn", o->wild_sewn, "So many stitches by construction that they find (tasks with two vessels end to end)")->check(CLI::Range(1, 8));
   add_common(*command, o->common);
   command->callback([o, &action] { action.run = [o](const Streams& io) { return run(*o, io); }; });
 }

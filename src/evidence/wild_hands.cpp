@@ -1,10 +1,13 @@
 #include "evidence/wild_hands.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <string_view>
 
+#include "evidence/wall_watch.h"
 #include "world/model.h"
 #include "world/state.h"
 
@@ -17,6 +20,7 @@ constexpr double kFarthest = 0.5;   // [m], from where the scene is: what blows 
 constexpr double kFastest = 20.0;   // [m/s]: a 10-0 thread stretched to its strength and let go stays below
 constexpr double kSwage = 20e-6;    // [m], between thread and needle
 constexpr int kMostApart = 5;       // steps: while a snapped thread breaks, steps whose solver reports trouble leave more
+constexpr int kMostBuried = 25;     // steps, 50 ms: what is drawn taut over a rim, or that a wall is flung upon, is out again after ten
 
 bool finite(const Points& x) { return x.allFinite(); }
 
@@ -35,6 +39,15 @@ std::string fault_of(const State& s, const Observation& o) {
 }
 
 bool apart(const State& s, const Observation& o) { return s.has_needle != 0 && (o.positions.col(o.n_nodes - 1) - o.needle.swage_W).norm() > kSwage; }
+
+/// In words, where one has been in the tissue for too long.
+std::string buried_in(const BuriedStrand& b) {
+  if (b.steps <= kMostBuried) return "";
+  std::array<char, 160> text;
+  std::snprintf(text.data(), text.size(), "%s, %.2f mm from the swage, is %.0f um deep in the tissue without a track, %d steps on end", b.strand < 0.0 ? "the thread" : "the needle",
+                1e3 * std::abs(b.strand), 1e6 * b.depth, b.steps);
+  return text.data();
+}
 
 double fastest_of(const State& s) {
   double fastest = s.needle.v.norm();
@@ -95,6 +108,7 @@ Inputs WildHands::next(const Observation& o) {
 WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps) {
   world.restore(first);
   WildHands hands(seed, world.description());
+  WallWatch watch(world.model());
   WildRun run;
   run.seed = seed;
   int apart_for = 0;  // steps
@@ -114,6 +128,9 @@ WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps
     apart_for = apart(world.state(), o) ? apart_for + 1 : 0;
     run.apart = std::max(run.apart, apart_for);
     if (run.fault.empty() && (apart_for > kMostApart || (apart_for > 0 && run.trouble == before))) run.fault = "thread and needle came apart";
+    if (run.fault.empty()) watch.look(world.state());
+    run.buried = std::max(run.buried, watch.longest().steps);
+    if (run.fault.empty()) run.fault = buried_in(watch.longest());
     run.fastest = std::max(run.fastest, fastest_of(world.state()));
     if (o.radius > 0.0 && o.n_contacts > 0) run.deepest = std::max(run.deepest, -o.min_gap / (2.0 * o.radius));
     if (run.fault.empty() && run.fastest > kFastest) run.fault = "something moves faster than hands and thread can make it";

@@ -2,7 +2,7 @@
 // Violent random hands: every tool of a scene is thrown from place to place around what there is to hit (thread, tissue, objects) at up to
 // 0.5 m/s, turned at will, jaws opening and snapping shut, buttons pressed, the device silent now and then. Same seed, same hands.
 // Whatever they do, the scene must stay sound: finite, no more motion than hands of that speed and a stretched thread can give, thread and
-// needle joined, strands not through each other. Test: wild_hands_test; `filum bench --wild`.
+// needle joined, strands not through each other, thread and needle in the tissue only where a track leads (wall_watch.h). Test: wild_hands_test; `filum bench --wild`.
 
 #include <array>
 #include <string>
@@ -48,6 +48,7 @@ struct WildRun {
   std::uint64_t late = 0;     // steps that took longer than dt
   std::uint64_t trouble = 0;  // times that a solver reported trouble
   int apart = 0;              // most steps on end in which thread and needle stood apart; each of them reported trouble
+  int buried = 0;             // most steps on end in which a place of thread or needle was deep in the tissue without a track
 };
 
 /// One run from `first`, a state of this world; ends at the first fault.

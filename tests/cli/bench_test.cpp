@@ -35,6 +35,7 @@ TEST(Bench, WildHandsAreCountedByTask) {
 TEST(Bench, WhatItDoesNotKnowIsRefused) {
   expect_refused({"bench", "--json", "warp-drive"}, {"found warp-drive", "expected", "rod-100"});
   expect_refused({"bench", "--wild", "0"}, {"--wild"});
+  expect_refused({"bench", "--wild", "1", "--wild-sewn", "3", "grasp-transfer"}, {"--wild-sewn", "found task grasp-transfer", "two vessels"});
   expect_refused({"bench", "--json", "--wild", "1", "no-such-task"}, {"found no-such-task", "knot-square"});
 }
 
