@@ -1,5 +1,6 @@
 #include "cli/rating_desk.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "analysis/agreement.h"
@@ -18,11 +19,8 @@ constexpr std::string_view kRatings = "/api/ratings/", kDocuments = "/documents/
 Json marks_json(const Rating& rating) {
   Json marks = Json::object();
   for (const ItemMark& m : rating.marks) marks[m.item] = m.points;
-  return {{"rater", rating.rater}, {"stored", rating.stored_utc}, {"marks", marks}};
+  return {{"scale", rating.scale}, {"rater", rating.rater}, {"stored", rating.stored_utc}, {"marks", marks}};
 }
-
-/// The scale that a result carries; null where there is none.
-Json scale_of(const Json& result) { return result.is_object() && result.contains("scale") ? result["scale"] : Json(nullptr); }
 
 std::vector<ItemMark> estimates_of(const Json& scale) {
   std::vector<ItemMark> marks;
@@ -50,19 +48,20 @@ Json RatingDesk::status(const std::string& session, const Json& result) const {
   return {{"session", session},
           {"task", result.value("task", "")},
           {"title", result.value("title", "")},
-          {"scale", scale_of(result)},
+          {"scales", scales_of(result)},
           {"ratings", given},
           {"trouble", trouble_}};
 }
 
 void RatingDesk::put(const std::string& session, const Json& result, const std::string& body) {
   if (!ratings_) throw InputError("rating", "store", trouble_, "a file of ratings that can be written");
-  const Json scale = scale_of(result);
-  Rating r = requested_rating(session, result.value("task", ""), scale, body);
+  const Json scales = scales_of(result);
+  Rating r = requested_rating(session, result.value("task", ""), scales, body);
   if (r.rater == kSimulatorCode) throw InputError("rating", "rater", r.rater, "a code that is not the simulator's");
-  const bool first = ratings_->list(session).empty();
+  const std::vector<Rating> before = ratings_->list(session);
+  const bool first = std::none_of(before.begin(), before.end(), [&](const Rating& one) { return one.scale == r.scale; });
   ratings_->put(r);
-  r.marks = estimates_of(scale);
+  r.marks = estimates_of(scale_named(scales, r.scale));
   r.rater = kSimulatorCode;
   if (first && !r.marks.empty()) ratings_->put(r);
 }

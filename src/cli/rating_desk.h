@@ -1,7 +1,7 @@
 #pragma once
 // Where raters mark stored sessions, and where their marks are compared with each other and with the simulator's estimates.
-//   GET  /api/ratings/SESSION   the scale of that session, with estimates, and the marks given so far
-//   POST /api/ratings/SESSION   {"rater": code, "marks": {item: points}}: every item of the scale
+//   GET  /api/ratings/SESSION   the scales of that session, with estimates, and the marks given so far
+//   POST /api/ratings/SESSION   {"rater": code, "scale": name, "marks": {item: points}}: every item of one of the scales
 //   GET  /api/agreement, /documents/agreement/{agreement.csv,agreement.json,ratings.csv}
 // Called by the server's thread only. Test: tests/cli/rating_desk_test.cpp.
 

@@ -69,10 +69,28 @@ std::vector<std::string> requested_names(const std::string& body, const char* na
   return list;
 }
 
-Rating requested_rating(const std::string& session, const std::string& task, const Json& scale, const std::string& body) {
-  if (scale.is_null()) throw InputError("rating", "scale", "none", "a session of a task that has a rating scale");
+Json scales_of(const Json& result) {
+  if (!result.is_object()) return Json::array();
+  if (result.contains("scales")) return result["scales"];
+  return result.contains("scale") ? Json::array({result["scale"]}) : Json::array();
+}
+
+const Json& scale_named(const Json& scales, const std::string& name) {
+  std::string names;
+  for (const Json& one : scales) {
+    if (one.at("name") == name) return one;
+    names += (names.empty() ? "" : ", ") + one.at("name").get<std::string>();
+  }
+  throw InputError("rating", "scale", json_shown(name), "one of the session's scales: " + names);
+}
+
+Rating requested_rating(const std::string& session, const std::string& task, const Json& scales, const std::string& body) {
+  if (!scales.is_array()) throw InputError("result", "scales", json_shown(scales), "a list of rating scales");
+  if (scales.empty()) throw InputError("rating", "scale", "none", "a session of a task that has a rating scale");
   const Json wish = parsed_json(body);
   if (!wish.is_object() || !wish.contains("rater") || !wish["rater"].is_string()) throw InputError("rating", "rater", json_shown_at(wish, "rater"), "the rater's code");
+  if (!wish.contains("scale") || !wish["scale"].is_string()) throw InputError("rating", "scale", json_shown_at(wish, "scale"), "the name of one of the session's scales");
+  const Json& scale = scale_named(scales, wish["scale"].get<std::string>());
   Rating r{session, task, scale.at("name").get<std::string>(), wish["rater"].get<std::string>(), "", {}};
   r.marks = marks_of(scale, wish.contains("marks") ? wish["marks"] : Json(nullptr));
   return r;

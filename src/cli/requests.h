@@ -25,8 +25,12 @@ std::string json_shown_at(const nlohmann::ordered_json& object, const std::strin
 std::string requested_text(const std::string& body, const char* name);
 std::vector<std::string> requested_names(const std::string& body, const char* name);
 
-/// A rater's code and marks, one for each item of the scale that the session's result carries. Throws InputError; `scale`, from a recording, may
-/// be damaged: then a JSON library's exception (std::exception).
-Rating requested_rating(const std::string& session, const std::string& task, const nlohmann::ordered_json& scale, const std::string& body);
+/// The list of rating scales that a result carries, as it stands there, or the one `scale` of earlier programs.
+nlohmann::ordered_json scales_of(const nlohmann::ordered_json& result);
+/// The one of that name. Throws InputError.
+const nlohmann::ordered_json& scale_named(const nlohmann::ordered_json& scales, const std::string& name);
+/// A rater's code, the name of one of the session's scales, and marks, one for each of its items. Throws InputError; `scales`, from a recording,
+/// may be damaged: then a JSON library's exception (std::exception).
+Rating requested_rating(const std::string& session, const std::string& task, const nlohmann::ordered_json& scales, const std::string& body);
 
 }  // namespace filum

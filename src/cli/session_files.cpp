@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/yaml_file.h"
 #include "cli/options.h"
+#include "cli/requests.h"
 #include "cli/security.h"
 #include "training/result_json.h"
 #include "training/task_session.h"
@@ -70,8 +71,9 @@ std::string message_of(Json result, const std::string& session) {
     if (!result.contains(key)) return {};
     message[key] = std::move(result[key]);
   }
-  for (const char* key : {"verdict", "pressure_map", "stitches", "spacings_m", "lapses", "lapse_rules", "scale", "leak", "clamps", "milking", "handling", "thrombosis_factors"})
+  for (const char* key : {"verdict", "pressure_map", "stitches", "spacings_m", "lapses", "lapse_rules", "leak", "clamps", "milking", "handling", "thrombosis_factors"})
     if (result.contains(key)) message[key] = std::move(result[key]);
+  if (Json scales = scales_of(result); !scales.empty()) message["scales"] = std::move(scales);
   return json_text(message);
 }
 

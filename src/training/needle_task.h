@@ -53,7 +53,7 @@ struct NeedleTask {
   LapseRules lapses;
   JoinGate join;
   bool has_tissue = false;
-  std::shared_ptr<const RatingScale> scale;  // of raters, or none
+  std::vector<std::shared_ptr<const RatingScale>> scales;  // of raters
 };
 
 /// A step of a task file. Throws InputError.

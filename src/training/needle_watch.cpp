@@ -284,11 +284,12 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
   if (join) {
     find_join_lapses(task_.lapses, *join, time_, r.lapses);
     find_gap_lapses(task_.lapses, *join, scene_.tissue, r.stitches, complete, time_, r.lapses);
+    r.line_tested = complete && join->sound && !join->edge.empty();
   }
   mark_critical(task_.lapses, r.lapses);
   r.soundness = tissue_.soundness;
   r.rules = task_.lapses.title;
-  r.scale = task_.scale;
+  r.scales = task_.scales;
   return r;
 }
 

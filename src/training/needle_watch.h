@@ -51,7 +51,8 @@ struct NeedleReport {
   std::optional<JoinReport> join;        // of a vessel with the clamps off
   std::optional<ClampReport> clamps;     // of a vessel, if the trainee took one off
   std::optional<MilkingReport> milking;  // if it was tried
-  std::shared_ptr<const RatingScale> scale;  // that raters mark it by, or none
+  bool line_tested = false;              // the whole line was looked at under pressure: a line without the lapse is not disrupted
+  std::vector<std::shared_ptr<const RatingScale>> scales;  // that raters mark it by
 };
 
 /// What a rubric line looks at; NaN for measures of other tasks.

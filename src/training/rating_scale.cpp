@@ -10,8 +10,18 @@
 namespace filum {
 namespace {
 
-const std::vector<std::string> kMeasures = {"leak", "back-walls", "spacing-variation", "bite-widest", "bite-narrowest", "bite-inequality", "lapses",
-                                            "knots-secure", "slack-most", "too-tight", "tail-longest", "tail-shortest"};
+/// The ten of the Anastomosis Lapse Index; a loose knot is none of them.
+const std::vector<std::string> kIndexLapses = {"disrupted-line", "back-wall", "oblique", "wide-bite", "partial-thickness",
+                                               "unequal-spacing", "wall-tear", "too-tight", "thread-in-lumen", "edge-overlap"};
+
+bool is_lapse(const std::string& measure) { return std::find(kIndexLapses.begin(), kIndexLapses.end(), measure) != kIndexLapses.end(); }
+
+std::vector<std::string> measures() {
+  std::vector<std::string> all = {"leak", "back-walls", "spacing-variation", "bite-widest", "bite-narrowest", "bite-inequality",
+                                  "lapses", "knots-secure", "slack-most", "tail-longest", "tail-shortest"};
+  all.insert(all.end(), kIndexLapses.begin(), kIndexLapses.end());
+  return all;
+}
 
 Range range_of(const YamlNode& node, const std::string& key) {
   const std::vector<double> ends = node.quantities(key, "-");
@@ -22,7 +32,7 @@ Range range_of(const YamlNode& node, const std::string& key) {
 ScaleCriterion criterion_of(const YamlNode& node, int most) {
   constexpr std::array<const char*, 5> kKeys = {"one", "two", "three", "four", "five"};
   ScaleCriterion c;
-  c.measure = node.choice("measure", kMeasures);
+  c.measure = node.choice("measure", measures());
   c.title = node.text("title");
   c.unit = node.text_or("unit", "-");
   c.source = node.text("source");
@@ -71,6 +81,19 @@ double secure_share(const NeedleReport& r) {
   return whole > 0.0 ? tied / whole : kNaN;
 }
 
+/// Whether a report without this lapse says that it is absent.
+bool looked_for(const std::string& lapse, const NeedleReport& r) {
+  if (lapse == "disrupted-line") return r.line_tested;
+  if (lapse == "thread-in-lumen" || lapse == "edge-overlap") return r.join && r.join->sound;
+  if (lapse == "unequal-spacing") return r.spacings.size() > 1;
+  return !r.stitches.empty();
+}
+
+double lapse_count(const std::string& lapse, const NeedleReport& r) {
+  const double count = count_of(r.lapses, lapse);
+  return count > 0.0 || looked_for(lapse, r) ? count : kNaN;
+}
+
 int points_of(const ScaleCriterion& c, double value) {
   int points = 0;
   for (const Range& range : c.points) points += range.contains(value) ? 1 : 0;
@@ -83,7 +106,7 @@ std::string reason(const ScaleCriterion& c, double value) {
   return c.title + text;
 }
 
-ScaleEstimate estimate(const ScaleItem& item, const NeedleReport& report) {
+ScaleEstimate estimate(const ScaleItem& item, bool fewer_is_better, const NeedleReport& report) {
   ScaleEstimate e;
   if (item.criteria.empty()) {
     e.why = "left to the rater: " + item.rater;
@@ -93,7 +116,7 @@ ScaleEstimate estimate(const ScaleItem& item, const NeedleReport& report) {
     const double value = scale_value(c.measure, report);
     if (std::isnan(value)) return {std::nullopt, std::nullopt, "-", "left to the rater: " + c.title + " could not be measured"};
     const int points = points_of(c, value);
-    if (e.points && points >= *e.points) continue;
+    if (e.points && (fewer_is_better ? points <= *e.points : points >= *e.points)) continue;
     e = {points, value, c.unit, reason(c, value)};
   }
   return e;
@@ -108,6 +131,7 @@ RatingScale parse_rating_scale(const YamlNode& file) {
   s.title = file.text("title");
   s.source = file.text("source");
   s.most = file.integer("most", 1, 5);
+  s.fewer_is_better = file.has("better") && file.choice("better", {"more", "fewer"}) == "fewer";
   for (const YamlNode& node : file.items("items")) {
     s.items.push_back(item_of(node, s.most));
     const auto same = [&](const ScaleItem& other) { return other.name == s.items.back().name; };
@@ -124,7 +148,7 @@ double scale_value(const std::string& measure, const NeedleReport& r) {
   if (measure == "leak") return r.join && r.join->sound ? 60e6 * r.join->leak : kNaN;
   if (measure == "lapses") return static_cast<double>(r.lapses.size());
   if (measure == "back-walls") return count_of(r.lapses, "back-wall");
-  if (measure == "too-tight") return count_of(r.lapses, "too-tight");
+  if (is_lapse(measure)) return lapse_count(measure, r);
   if (measure == "spacing-variation") return variation(r.spacings);
   if (measure == "bite-widest") return over_stitches(r, true, [](const Stitch& s) { return std::max(s.bite[0], s.bite[1]); }) / r.thickness;
   if (measure == "bite-narrowest") return over_stitches(r, false, [](const Stitch& s) { return std::min(s.bite[0], s.bite[1]); }) / r.thickness;
@@ -138,7 +162,7 @@ double scale_value(const std::string& measure, const NeedleReport& r) {
 
 std::vector<ScaleEstimate> estimates(const RatingScale& scale, const NeedleReport& report) {
   std::vector<ScaleEstimate> all;
-  for (const ScaleItem& item : scale.items) all.push_back(estimate(item, report));
+  for (const ScaleItem& item : scale.items) all.push_back(estimate(item, scale.fewer_is_better, report));
   return all;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 // A rating scale for the finished work, from a file (curricula/scales/*.yaml, format filum-scale/1): items of 0 to `most` points. What the
 // simulator can tell of an item is its estimate, with the number that decided; an item without criteria, or whose measures are not there,
-// is left to the rater. An estimate is the least that an item's criteria allow. Test: rating_scale_test.
+// is left to the rater. An estimate is the worst that an item's criteria say: the fewest points, or the most where points count lapses
+// (`better: fewer`). Test: rating_scale_test.
 
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@ struct ScaleItem {
 struct RatingScale {
   std::string name, title, source;
   int most = 2;
+  bool fewer_is_better = false;    // points count lapses
   std::vector<ScaleItem> items;
 };
 
@@ -39,7 +41,8 @@ struct ScaleEstimate {
   std::string unit = "-", why;
 };
 
-/// Leak in ml/min, bites in wall thicknesses, slack and ends in mm; NaN where there was nothing to measure.
+/// Leak in ml/min, bites in wall thicknesses, slack and ends in mm, lapses of the Anastomosis Lapse Index by their names (training/lapse.h):
+/// how many the report has. NaN where there was nothing to measure: a lapse that was not looked for is not absent.
 double scale_value(const std::string& measure, const NeedleReport& report);
 /// One for each item.
 std::vector<ScaleEstimate> estimates(const RatingScale& scale, const NeedleReport& report);

@@ -206,7 +206,7 @@ Json scale_json(const RatingScale& s, const NeedleReport& report) {
                      {"unit", e.unit},
                      {"why", e.why}});
   }
-  return {{"name", s.name}, {"title", s.title}, {"source", s.source}, {"label", "simulator-derived estimates, not validated"}, {"most", s.most}, {"items", items}};
+  return {{"name", s.name}, {"title", s.title}, {"source", s.source}, {"label", "simulator-derived estimates, not validated"}, {"most", s.most}, {"better", s.fewer_is_better ? "fewer" : "more"}, {"items", items}};
 }
 
 void add_needle(const NeedleReport& n, Json& json) {
@@ -220,7 +220,7 @@ void add_needle(const NeedleReport& n, Json& json) {
   json["lapses"] = Json::array();
   for (const Lapse& l : n.lapses) json["lapses"].push_back({{"name", l.name}, {"stitch", l.stitch}, {"time", finite(l.time)}, {"value", finite(l.value)}, {"unit", l.unit}, {"critical", l.critical}});
   json["lapse_rules"] = n.rules;
-  if (n.scale) json["scale"] = scale_json(*n.scale, n);
+  for (const auto& scale : n.scales) json["scales"].push_back(scale_json(*scale, n));
   json["tissue_soundness"] = finite(n.soundness);
   if (n.join) json["leak"] = leak_json(*n.join, n.round);
   if (n.clamps) json["clamps"] = clamps_json(*n.clamps);

@@ -147,12 +147,28 @@ void parse_retraction(const YamlNode& file, const std::string& root, Task& task)
   task.retraction = std::move(retraction);
 }
 
+/// The scales that raters mark a task by: a list, or the one `scale` of recordings made before there were several.
+std::vector<std::shared_ptr<const RatingScale>> parse_scales(const YamlNode& file, const std::string& root) {
+  if (file.has("scale") && file.has("scales")) file.refuse("scale", "scales alone");
+  std::vector<std::string> paths;
+  if (file.has("scale")) paths = {file.text("scale")};
+  if (file.has("scales")) paths = file.texts("scales");
+  if (file.has("scales") && paths.empty()) file.refuse("scales", "at least one file of a rating scale");
+  std::vector<std::shared_ptr<const RatingScale>> scales;
+  for (const std::string& path : paths) {
+    scales.push_back(std::make_shared<const RatingScale>(load_rating_scale(root + "/" + path)));
+    const auto same = [&](const auto& other) { return other->name == scales.back()->name; };
+    if (std::count_if(scales.begin(), scales.end(), same) > 1) file.refuse("scales", "each scale once");
+  }
+  return scales;
+}
+
 /// Goals with a needle, and the steps that show them.
 void parse_needle(const YamlNode& file, const std::string& root, Task& task) {
   auto needle = std::make_shared<NeedleTask>();
   needle->has_tissue = file.has("lapses");
   if (needle->has_tissue) needle->lapses = load_lapse_rules(root + "/" + file.text("lapses"));
-  if (needle->has_tissue && file.has("scale")) needle->scale = std::make_shared<const RatingScale>(load_rating_scale(root + "/" + file.text("scale")));
+  if (needle->has_tissue) needle->scales = parse_scales(file, root);
   if (file.has("join")) needle->join = parse_join_gate(file.map("join"));
   for (const YamlNode& node : file.items("steps")) {
     TaskStep step;

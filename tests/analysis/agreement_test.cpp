@@ -84,6 +84,26 @@ TEST(Agreement, PairsRatersWithEachOtherAndWithTheSimulator) {
   EXPECT_EQ(everybody->icc, 1.0);
 }
 
+/// Items of 0 and 1: (p_o - p_e) / (1 - p_e) of Cohen 1960, from a table of both, either, neither.
+TEST(Agreement, OfALapseItIsCohensUnweightedKappaAndScalesStandApart) {
+  constexpr int kBoth = 7, kFirst = 2, kSecond = 4, kNeither = 12, kAll = 25;
+  std::vector<Rating> ratings;
+  for (int s = 0; s < kAll; ++s) {
+    const int first = s < kBoth + kFirst ? 1 : 0, second = s < kBoth || (s >= kBoth + kFirst && s < kBoth + kFirst + kSecond) ? 1 : 0;
+    ratings.push_back({"s" + std::to_string(s), "t", "lapse-index", "R1", "", {{"oblique", first}, {"closure", 0}}});
+    ratings.push_back({"s" + std::to_string(s), "t", "lapse-index", "simulator", "", {{"oblique", second}}});
+    ratings.push_back(rating(s, "R1", 1, 1));
+  }
+  const std::vector<Agreement> all = agreements(ratings);
+  ASSERT_EQ(all.size(), 1u) << "marks by another scale are no second rater's";
+  EXPECT_EQ(all[0].scale, "lapse-index");
+  EXPECT_EQ(all[0].item, "oblique");
+  const double n = kAll, seen = (kBoth + kNeither) / n;
+  const double chance = (kBoth + kFirst) / n * (kBoth + kSecond) / n + (kNeither + kSecond) / n * (kNeither + kFirst) / n;
+  EXPECT_NEAR(all[0].kappa, (seen - chance) / (1.0 - chance), 1e-12);
+  EXPECT_NEAR(all[0].same, seen, 1e-12);
+}
+
 TEST(Agreement, FilesHaveARowForEachAndNoInventedNumber) {
   const std::vector<Rating> ratings = {rating(1, "R1", 2, 1), rating(1, "R2", 2, 1)};
   const std::vector<Agreement> all = agreements(ratings);

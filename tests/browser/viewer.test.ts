@@ -48,6 +48,40 @@ it("shows every stereo mode, reticle and quality without an error", async () => 
   expect(trouble).toEqual([]);
 });
 
+/// The trainer's desk is made believe as well: it stores one rater's marks and the estimates beside them.
+it("is rated by keyboard, scale by scale", async () => {
+  const { page, trouble } = opened;
+  const item = (k: number) => ({ name: `lapse-${k}`, title: `Lapse ${k}`, points: ["absent", "present"], estimate: 0, value: 0, unit: "-", why: "none" });
+  const scale = { source: "S", label: "estimates", most: 1, better: "fewer", items: Array.from({ length: 10 }, (_, k) => item(k)) };
+  const scales = [{ ...scale, name: "one", title: "One" }, { ...scale, name: "two", title: "Two" }], stored: object[] = [];
+  await page.route("**/api/ratings/s1", (route) => {
+    const wish = route.request().postDataJSON() as { scale: string; rater: string; marks: object } | null;
+    if (wish) stored.push({ ...wish, stored: "2026-11-27T01:00:00Z" }, { ...wish, rater: "simulator", marks: Object.fromEntries(scale.items.map((one) => [one.name, 0])), stored: "2026-11-27T01:00:00Z" });
+    return route.fulfill({ json: { session: "s1", task: "t", title: "Join", scales, ratings: stored, trouble: "" } });
+  });
+  await page.goto(`${mock.address}#/rate/s1`);
+  const first = page.locator("[data-scale=one]"), second = page.locator("[data-scale=two]");
+  await page.locator("input[name=rater]").focus();
+  await page.keyboard.type("R1");
+  for (let k = 0; k < 10; ++k) {
+    await page.keyboard.press("Tab");
+    await page.keyboard.press(k === 2 ? "1" : "0");
+  }
+  expect(await first.locator("input:checked").evaluateAll((all) => all.map((one) => (one as HTMLInputElement).value).join(""))).toBe("0010000000");
+  await page.keyboard.press("ArrowDown");
+  expect(await first.locator("[data-item=lapse-9] input:checked").inputValue(), "arrows choose as well").toBe("1");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("[data-scale=one] .given tbody tr");
+  expect(await first.locator(".given tr.sum td").allTextContents()).toEqual(["2", "0", ""]);
+  expect(stored.length, "one scale is stored").toBe(2);
+  expect(await second.locator(".given table").count()).toBe(0);
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Enter");
+  expect(stored.length, "half a form is not stored").toBe(2);
+  expect(trouble).toEqual([]);
+});
+
 it("zooms and focuses by keyboard within its range", async () => {
   const { page } = opened;
   await start("demo");

@@ -37,9 +37,30 @@ TEST(Requests, WhatIsOfAnotherTypeIsShown) {
   EXPECT_EQ(found_in([] { requested_text(R"({"other":1})", "dataset"); }), "nothing");
   EXPECT_EQ(found_in([] { requested_text("[1]", "dataset"); }), "nothing");
   EXPECT_EQ(found_in([] { requested_names(R"({"sessions":"a"})", "sessions"); }), "\"a\"");
-  const nlohmann::ordered_json scale = {{"name", "mars10"}, {"most", 2}, {"items", nlohmann::ordered_json::array()}};
-  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scale, R"({"rater":7,"marks":{}})"); }), "7");
-  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scale, R"({"rater":"R1","marks":3})"); }), "3");
+  const auto scales = parsed_json(R"([{"name":"mars10","most":2,"items":[]}])");
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scales, R"({"rater":7,"scale":"mars10","marks":{}})"); }), "7");
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scales, R"({"rater":"R1","scale":"mars10","marks":3})"); }), "3");
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scales, R"({"rater":"R1","scale":4,"marks":{}})"); }), "4");
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scales, R"({"rater":"R1","marks":{}})"); }), "nothing");
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scales, R"({"rater":"R1","scale":"lapse-index","marks":{}})"); }), "\"lapse-index\"");
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", 5, R"({"rater":"R1","scale":"mars10","marks":{}})"); }), "5") << "a damaged recording's";
+}
+
+TEST(Requests, MarksAreThoseOfTheScaleThatIsNamed) {
+  const auto scales = parsed_json(R"([{"name":"mars10","most":2,"items":[{"name":"knots"}]},{"name":"lapse-index","most":1,"items":[{"name":"oblique"}]}])");
+  const Rating rating = requested_rating("s", "t", scales, R"({"rater":"R1","scale":"lapse-index","marks":{"oblique":1}})");
+  EXPECT_EQ(rating.scale, "lapse-index");
+  ASSERT_EQ(rating.marks.size(), 1u);
+  EXPECT_EQ(rating.marks[0].item, "oblique");
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scales, R"({"rater":"R1","scale":"lapse-index","marks":{"oblique":2}})"); }), "2") << "a lapse is there or not";
+  EXPECT_EQ(found_in([&] { requested_rating("s", "t", scales, R"({"rater":"R1","scale":"mars10","marks":{"oblique":1}})"); }), "nothing");
+}
+
+TEST(Requests, AResultOfAnEarlierProgramHasItsOneScale) {
+  EXPECT_EQ(scales_of(parsed_json(R"({"scale":{"name":"a"}})")), parsed_json(R"([{"name":"a"}])"));
+  EXPECT_EQ(scales_of(parsed_json(R"({"scales":[{"name":"a"},{"name":"b"}]})")).size(), 2u);
+  EXPECT_TRUE(scales_of(parsed_json("{}")).empty());
+  EXPECT_TRUE(scales_of(parsed_json("[]")).empty());
 }
 
 TEST(Requests, JsonDeeperThanTheLimitIsNone) {
@@ -57,15 +78,15 @@ TEST(Requests, NestingThatWouldEndTheStackIsRefused) {
   EXPECT_THROW(calibration_plan(R"({"sensor":)" + deep + "}", "", "", ""), InputError);
   EXPECT_THROW(camera_plan(R"({"name":)" + deep + "}", "program", "", ""), InputError);
   EXPECT_THROW(upload.begin(R"({"dataset":"d","files":[{"name":"a","bytes":)" + deep + "}]}"), InputError);
-  const nlohmann::ordered_json scale = {{"name", "mars10"}, {"most", 2}, {"items", nlohmann::ordered_json::array()}};
-  EXPECT_THROW(requested_rating("s", "t", scale, R"({"rater":"R1","marks":)" + deep + "}"), InputError);
+  const auto scales = parsed_json(R"([{"name":"mars10","most":2,"items":[]}])");
+  EXPECT_THROW(requested_rating("s", "t", scales, R"({"rater":"R1","scale":"mars10","marks":)" + deep + "}"), InputError);
 }
 
 /// A damaged recording's scale: a number that no int holds is not turned into one.
 TEST(Requests, AScaleOfAbsurdPointsIsRefused) {
   const auto rated = [](const char* most) {
-    const auto scale = parsed_json(std::string(R"({"name":"mars10","most":)") + most + R"(,"items":[{"name":"closure"}]})");
-    return requested_rating("s", "t", scale, R"({"rater":"R1","marks":{"closure":1}})");
+    const auto scales = parsed_json(std::string(R"([{"name":"mars10","most":)") + most + R"(,"items":[{"name":"closure"}]}])");
+    return requested_rating("s", "t", scales, R"({"rater":"R1","scale":"mars10","marks":{"closure":1}})");
   };
   EXPECT_EQ(rated("2").marks.front().points, 1);
   for (const char* most : {"22222222222222222222222222222222", "4294967298", "1.5", "-1", "\"2\"", "null"}) EXPECT_THROW(rated(most), InputError) << most;

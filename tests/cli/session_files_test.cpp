@@ -74,6 +74,16 @@ TEST_F(SessionFiles, EveryPartOfAResultReachesTheBrowser) {
   for (const auto& [key, value] : whole.items()) EXPECT_EQ(message.value(key, nlohmann::json()), value) << key;
 }
 
+TEST_F(SessionFiles, AStoredResultWithOneScaleHasAListOfIt) {
+  auto stored = nlohmann::json::object();
+  for (const char* key : {"task", "title", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths"}) stored[key] = key;
+  EXPECT_FALSE(nlohmann::json::parse(result_message(stored.dump(), "s")).contains("scales"));
+  stored["scale"] = {{"name", "mars10"}};
+  const auto message = nlohmann::json::parse(result_message(stored.dump(), "s"));
+  EXPECT_EQ(message.at("scales"), nlohmann::json::array({stored["scale"]}));
+  EXPECT_FALSE(message.contains("scale"));
+}
+
 TEST_F(SessionFiles, StoredTextThatIsNoResultGivesNoMessage) {
   for (const char* text : {"", "{", "[]", "null", "{\"task\": 1}"}) EXPECT_EQ(result_message(std::string(text), "s"), "") << text;
 }

@@ -5,12 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "base/error.h"
 #include "training/needle_task.h"
+#include "training/rating_scale.h"
 #include "world/model.h"
 #include "world/vessel_model.h"
 
@@ -90,6 +92,20 @@ TEST(Setup, AWallBearsWhatCountsAsTooTight) {
     EXPECT_LT(s.task.needle->lapses.tight, 0.5 * s.model->vessel->track.tear) << name;
   }
   EXPECT_GT(looked_at, 5);
+}
+
+/// A join whose line of stitches is looked at, and the planted lapses: raters and simulator are compared lapse by lapse.
+TEST(Setup, EveryJoinIsRatedByMarsAndByTheLapseIndex) {
+  int joins = 0;
+  for (const std::string& name : task_names(FILUM_SOURCE_DIR)) {
+    const auto s = load_setup(FILUM_SOURCE_DIR, name);
+    if (!s.task.needle || (!std::isfinite(s.task.needle->lapses.line_gap) && name != "anastomosis-lapses")) continue;
+    ++joins;
+    ASSERT_EQ(s.task.needle->scales.size(), 2u) << name;
+    EXPECT_EQ(s.task.needle->scales[0]->name.substr(0, 6), "mars10") << name;
+    EXPECT_EQ(s.task.needle->scales[1]->name, "lapse-index") << name;
+  }
+  EXPECT_EQ(joins, 9);
 }
 
 TEST(Setup, EveryTaskThatIsListedCanBeRead) {

@@ -291,6 +291,29 @@ struct CutThread {
   }
 };
 
+/// What was not looked at is not told to be whole: stitches to come, rules without gaps, a join that could not be tested.
+TEST(NeedleWatch, TheLineIsTestedWhenTheTaskIsDoneAndItsJoinWasTested) {
+  NeedleTask task;
+  task.has_tissue = true;
+  task.lapses.line_gap = 0.25;
+  SceneDescription scene;
+  scene.tissue.thickness = 0.1e-3;
+  scene.tissue.cut_along = Vec3::UnitX();
+  JoinReport join;
+  join.edge = {{0.0, 0.0}, {0.5, 0.0}};
+  const auto tested = [&](const NeedleTask& t, const std::optional<JoinReport>& j) { return NeedleWatch(t, scene).report(j).line_tested; };
+  EXPECT_TRUE(tested(task, join));
+  EXPECT_FALSE(tested(task, std::nullopt));
+  JoinReport unsound = join;
+  unsound.sound = false;
+  EXPECT_FALSE(tested(task, unsound));
+  NeedleTask unfinished = task, loose = task;
+  unfinished.goals = {NeedleGoal{}};
+  EXPECT_FALSE(tested(unfinished, join));
+  loose.lapses.line_gap = LapseRules{}.line_gap;
+  EXPECT_FALSE(tested(loose, join));
+}
+
 TEST(NeedleWatch, BothEndsOfAFreshSutureMustBeCut) {
   CutThread t;
   t.sew(0, 4e-3);

@@ -85,6 +85,75 @@ TEST(RatingScale, WhatCouldNotBeMeasuredIsNotMarked) {
   EXPECT_EQ(points(r)[3], 2) << "a lone pass is no stitch with a loose knot";
 }
 
+RatingScale lapse_index() { return load_rating_scale(FILUM_SOURCE_DIR "/curricula/scales/lapse-index.yaml"); }
+
+std::vector<std::string> names_with(const RatingScale& scale, const NeedleReport& r, std::optional<int> points) {
+  std::vector<std::string> names;
+  const auto all = estimates(scale, r);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (all[k].points == points) names.push_back(scale.items[k].name);
+  return names;
+}
+
+TEST(RatingScale, TheLapseIndexHasTenLapsesOfWhichFewerAreBetter) {
+  const RatingScale s = lapse_index();
+  ASSERT_EQ(s.items.size(), 10u);
+  EXPECT_EQ(s.most, 1);
+  EXPECT_TRUE(s.fewer_is_better);
+  EXPECT_FALSE(mars10().fewer_is_better);
+  for (const ScaleItem& item : s.items) {
+    ASSERT_EQ(item.criteria.size(), 1u) << item.name;
+    EXPECT_EQ(item.criteria[0].measure, item.name);
+    EXPECT_EQ(item.words[0], "absent");
+  }
+}
+
+TEST(RatingScale, ALapseOfTheReportIsPresentByItsNameAlone) {
+  const RatingScale s = lapse_index();
+  NeedleReport r = good();
+  r.line_tested = true;
+  EXPECT_EQ(names_with(s, r, 0).size(), 10u) << "a good join";
+  for (const ScaleItem& item : s.items) {
+    NeedleReport one = r;
+    one.lapses.push_back({item.name.c_str(), 0, 1.0, 1.0, "-"});
+    one.lapses.push_back(one.lapses.back());
+    one.lapses.push_back({"loose-knot", 0, 1.0, 1.0, "-"});
+    EXPECT_EQ(names_with(s, one, 1), std::vector<std::string>{item.name}) << "two of it are one point, a loose knot is none of the ten";
+    EXPECT_EQ(scale_value(item.name, one), 2.0);
+  }
+}
+
+/// "Absent" is said only of what was looked for: otherwise raters would be compared with what nobody saw.
+TEST(RatingScale, ALapseThatWasNotLookedForIsLeftToTheRater) {
+  const RatingScale s = lapse_index();
+  NeedleReport r = good();
+  EXPECT_EQ(names_with(s, r, std::nullopt), std::vector<std::string>{"disrupted-line"}) << "stitches may still be to come";
+  r.lapses.push_back({"disrupted-line", 0, 1.0, 1.0, "thicknesses"});
+  EXPECT_EQ(names_with(s, r, 1), std::vector<std::string>{"disrupted-line"}) << "found all the same";
+  r.lapses.clear();
+  r.line_tested = true;
+  r.join->sound = false;
+  EXPECT_EQ(names_with(s, r, std::nullopt), (std::vector<std::string>{"thread-in-lumen", "edge-overlap"}));
+  r.join.reset();
+  EXPECT_EQ(names_with(s, r, std::nullopt), (std::vector<std::string>{"thread-in-lumen", "edge-overlap"}));
+  r.spacings.resize(1);
+  EXPECT_EQ(names_with(s, r, std::nullopt).size(), 3u) << "one space is not unequal";
+  r.stitches.clear();
+  r.line_tested = false;
+  EXPECT_EQ(names_with(s, r, std::nullopt).size(), 10u) << "nothing was sewn";
+}
+
+TEST(RatingScale, WhereFewerIsBetterTheMostOfTheCriteriaCounts) {
+  const std::string text = "format: filum-scale/1\nname: a\ntitle: A\nsource: S\nmost: 1\nbetter: fewer\nitems:\n  - name: x\n    title: X\n    points: [no, yes]\n    criteria:\n"
+                           "      - {measure: oblique, title: O, source: S, one: [\"1\", \"9\"]}\n      - {measure: wide-bite, title: W, source: S, one: [\"1\", \"9\"]}\n";
+  NeedleReport r = good();
+  r.lapses.push_back({"wide-bite", 0, 1.0, 4.0, "thicknesses"});
+  EXPECT_EQ(estimates(parse_rating_scale(YamlNode::parse(text, "f")), r)[0].points, 1);
+  const auto with = [&](const std::string& way) { return parse_rating_scale(YamlNode::parse(std::string(text).replace(text.find("fewer"), 5, way), "f")); };
+  EXPECT_EQ(estimates(with("more"), r)[0].points, 0);
+  EXPECT_THROW(with("less"), InputError);
+}
+
 TEST(RatingScale, RefusesAScaleThatSaysTwoThings) {
   const std::string head = "format: filum-scale/1\nname: a\ntitle: A\nsource: S\nmost: 1\nitems:\n  - name: x\n    title: X\n    points: [no, yes]\n";
   EXPECT_NO_THROW(parse_rating_scale(YamlNode::parse(head + "    rater: eye\n", "f")));

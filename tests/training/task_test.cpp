@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "training/needle_task.h"
+#include "training/rating_scale.h"
 
 namespace filum {
 namespace task_test {
@@ -77,6 +78,34 @@ TEST(Task, TheAnastomosisAsksForEachOfEightStitchesTiedAndCut) {
   EXPECT_NEAR(task.max_total(), 100.0, 1e-12);
   EXPECT_GT(task.needle->lapses.loose_gap, 0.0);
   for (const RubricItem& item : task.rubric) EXPECT_FALSE(item.source.empty()) << item.title;
+}
+
+/// Names of the scales that a task of one stitch with these lines has, or the refused field.
+std::vector<std::string> scales_with(const std::string& lines) {
+  const std::string text = "format: filum-task/1\nkind: needle\nname: t\ntitle: T\ndescription: D\nsuture: 10-0-nylon\ntime_limit: \"60 s\"\npass_points: \"5\"\n"
+                           "lapses: curricula/lapses/vessel.yaml\n" + lines +
+                           "steps:\n  - { kind: pick, name: a, hint: b, tool: \"1\" }\n"
+                           "rubric:\n  - { measure: time, title: Time, points: \"10\", unit: s, full_to: \"25 s\", zero_above: \"75 s\", source: MI4 }\n";
+  std::vector<std::string> names;
+  try {
+    const Task task = parse_task(YamlNode::parse(text, "t.yaml"), FILUM_SOURCE_DIR);
+    for (const auto& scale : task.needle->scales) names.push_back(scale->name);
+  } catch (const InputError& e) {
+    return {"refused: " + e.field};
+  }
+  return names;
+}
+
+TEST(Task, RatersMarkByTheScalesOfAListOrByTheOneOfAnEarlierRecording) {
+  using Names = std::vector<std::string>;
+  const std::string mars = "curricula/scales/mars10.yaml", lapses = "curricula/scales/lapse-index.yaml";
+  EXPECT_EQ(scales_with(""), Names{});
+  EXPECT_EQ(scales_with("scales: [" + mars + ", " + lapses + "]\n"), (Names{"mars10", "lapse-index"}));
+  EXPECT_EQ(scales_with("scale: " + mars + "\n"), Names{"mars10"});
+  EXPECT_EQ(scales_with("scale: " + mars + "\nscales: [" + lapses + "]\n"), Names{"refused: scale"});
+  EXPECT_EQ(scales_with("scales: []\n"), Names{"refused: scales"});
+  EXPECT_EQ(scales_with("scales: [" + mars + ", " + mars + "]\n"), Names{"refused: scales"});
+  EXPECT_EQ(scales_with("scales: " + mars + "\n"), Names{"refused: scales"});
 }
 
 TEST(Task, ReadsUnitsIntoSi) {

@@ -1,7 +1,5 @@
-import { RatePage } from "@viewer/ui/rate_page";
 import { both, clampSection, handlingSection, joinSection, replayAt, StitchList, stitchSection, tails } from "@viewer/ui/stitch_panel";
 import { cividis } from "@viewer/scene/palette";
-import type { App } from "@viewer/app";
 import type { Leak, Result, Stitch } from "@viewer/messages";
 import { resultOf } from "./sample_frames.mjs";
 
@@ -77,49 +75,6 @@ it("the join shows leak, narrowing and doubt", () => {
   const text = joinSection(leak)!.textContent!;
   for (const part of ["12.3 ml/min", "20 %", "patent", "gap 50 µm", "take these numbers with care"]) expect(text).toContain(part);
   expect(joinSection(undefined)).toBeNull();
-});
-
-describe("a rater's form", () => {
-  const item = (name: string, estimate: number | null) => ({ name, title: `Title of ${name}`, points: ["bad", "fair", "good"], estimate, value: null, unit: "-", why: `why ${name}` });
-  const scale = { name: "mars10", title: "MARS10", source: "S", label: "L", most: 2, items: [item("closure", 1), item("knots", null)] };
-  let stored: { rater: string; stored: string; marks: Record<string, number> }[] = [];
-  beforeEach(() => {
-    stored = [];
-    globalThis.fetch = (async (_path: string, init?: { method?: string; body?: string }) => {
-      if (init?.method === "POST") {
-        const { rater, marks } = JSON.parse(init.body!);
-        if (rater === "bad") return new Response(JSON.stringify({ refused: "rater: found bad, expected a code" }));
-        stored = [{ rater, stored: "2026-11-22T01:00:00Z", marks }, { rater: "simulator", stored: "2026-11-22T01:00:00Z", marks: { closure: 1 } }];
-      }
-      return new Response(JSON.stringify({ session: "s1", task: "t", title: "Join", scale, ratings: stored, trouble: "" }));
-    }) as unknown as typeof fetch;
-  });
-  const settled = () => new Promise((done) => setTimeout(done, 20));
-
-  it("hides the estimates until marks are given, then shows both", async () => {
-    const page = new RatePage({} as App, "s1");
-    await settled();
-    expect(page.element.textContent).not.toContain("why closure");
-    const form = page.element.querySelector("form")!;
-    (form.querySelector("input[name=rater]") as HTMLInputElement).value = "R1";
-    for (const name of ["closure", "knots"]) (form.querySelector(`input[name="item-${name}"][value="2"]`) as HTMLInputElement).checked = true;
-    form.dispatchEvent(new Event("submit", { cancelable: true }));
-    await settled();
-    expect(stored[0]).toMatchObject({ rater: "R1", marks: { closure: 2, knots: 2 } });
-    const rows = [...page.element.querySelectorAll(".given tbody tr")].map((row) => [...row.children].map((cell) => cell.textContent));
-    expect(rows[0].slice(0, 4)).toEqual(["Title of closure", "2", "1", "why closure"]);
-    expect(rows[1].slice(0, 3)).toEqual(["Title of knots", "2", "–"]);
-    expect(rows[2].slice(0, 3)).toEqual(["Sum", "4", "–"]);
-  });
-  it("says what was refused", async () => {
-    const page = new RatePage({} as App, "s1");
-    await settled();
-    const form = page.element.querySelector("form")!;
-    (form.querySelector("input[name=rater]") as HTMLInputElement).value = "bad";
-    form.dispatchEvent(new Event("submit", { cancelable: true }));
-    await settled();
-    expect(page.element.querySelector("[role=alert]")!.textContent).toContain("expected a code");
-  });
 });
 
 it("the palette gets lighter all the way", () => {

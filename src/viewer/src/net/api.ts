@@ -69,12 +69,12 @@ export const study = {
 export const sessions = (): Promise<SessionList> => get("/api/sessions");
 export const session = (id: string): Promise<SessionDetail> => get(`/api/sessions/${encodeURIComponent(id)}`);
 
-export interface Rated { rater: string; stored: string; marks: Record<string, number> }
-export interface RatingStatus { session: string; task: string; title: string; scale: Scale | null; ratings: Rated[]; trouble: string }
+export interface Rated { scale: string; rater: string; stored: string; marks: Record<string, number> }
+export interface RatingStatus { session: string; task: string; title: string; scales: Scale[]; ratings: Rated[]; trouble: string }
 export interface AgreementRow { scale: string; item: string; a: string; b: string; sessions: number; raters: number; same: number | null; bias: number | null; kappa: number | null; kappa_low: number | null; kappa_high: number | null; icc: number | null }
-export interface AgreementStatus { statistics: string; agreement: AgreementRow[]; ratings: (Rated & { session: string; task: string; scale: string })[]; trouble: string }
+export interface AgreementStatus { statistics: string; agreement: AgreementRow[]; ratings: (Rated & { session: string; task: string })[]; trouble: string }
 export const ratings = {
   of: (id: string): Promise<RatingStatus> => get(`/api/ratings/${encodeURIComponent(id)}`),
-  put: (id: string, rater: string, marks: Record<string, number>): Promise<RatingStatus> => post(`/api/ratings/${encodeURIComponent(id)}`, { rater, marks }),
+  put: (id: string, scale: string, rater: string, marks: Record<string, number>): Promise<RatingStatus> => post(`/api/ratings/${encodeURIComponent(id)}`, { rater, scale, marks }),
   agreement: (): Promise<AgreementStatus> => get("/api/agreement"),
 };

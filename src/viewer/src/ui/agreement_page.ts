@@ -28,7 +28,7 @@ export class AgreementPage implements Page {
     this.element.replaceChildren(h("h1", {}, "Agreement of raters"),
       ...(status.trouble ? [h("p", { class: "alarm", role: "alert" }, status.trouble)] : []),
       h("section", { class: "panel" }, h("p", {}, `${raters.size} ${raters.size === 1 ? "rater has" : "raters have"} marked ${sessions.size} ${sessions.size === 1 ? "session" : "sessions"}. The simulator's marks are estimates, not validated.`),
-        h("p", { class: "quiet" }, "Kappa: Cohen's, quadratic weights; 1 is full agreement, 0 that of chance; interval (95 %) by resampling sessions, from five sessions on. ICC(2,1): absolute agreement of single ratings. Difference: mean of the first rater's points less the second's."),
+        h("p", { class: "quiet" }, "Kappa: Cohen's, quadratic weights (for items of 0 and 1 the plain one); 1 is full agreement, 0 that of chance; interval (95 %) by resampling sessions, from five sessions on. ICC(2,1): absolute agreement of single ratings. Difference: mean of the first rater's points less the second's."),
         status.agreement.length > 0 ? h("div", { class: "long" }, this.table(status.agreement)) : h("p", {}, "Two marks of one session are needed: open a result and choose Rate."),
         h("p", { class: "buttons" }, file("agreement.csv", "Agreement (CSV)"), file("ratings.csv", "All marks (CSV)"), file("agreement.json", "All (JSON)"))));
   }

@@ -1,6 +1,6 @@
 // What the trainer made of a session: score with reasons, knot, curves, paths, events. Nothing is computed here.
 import type { App, Page } from "../app";
-import type { Result, ServerMessage } from "../messages";
+import type { Result, Scale, ServerMessage } from "../messages";
 import { session as fetchSession } from "../net/api";
 import { analysisPanel } from "./analysis_panel";
 import { h } from "./dom";
@@ -9,6 +9,7 @@ import { PathPlot } from "./path_plot";
 import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
 import { chartsOf, drawChart } from "./plots";
+import { better } from "./rating_words";
 import { clampSection, factorSection, handlingSection, joinSection, stitchSection } from "./stitch_panel";
 
 /// Why it is not passed. Results of older sessions may not say.
@@ -63,7 +64,7 @@ export class ResultPage implements Page {
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
       ...(result.passed ? [] : [reasons(result.verdict ?? [])]),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
-      h("div", { class: "stitchgrid" }, stitchSection(result, id), this.scaleCard(result, id), joinSection(result.leak, result.stitches, result.lapses), clampSection(result.clamps, result.milking), handlingSection(result.handling), factorSection(result.thrombosis_factors)),
+      h("div", { class: "stitchgrid" }, stitchSection(result, id), ...(result.scales ?? []).map((scale, k) => this.scaleCard(scale, k === 0 ? id : null)), joinSection(result.leak, result.stitches, result.lapses), clampSection(result.clamps, result.milking), handlingSection(result.handling), factorSection(result.thrombosis_factors)),
       this.curves(result));
     const map = pressureMapPanel(result.pressure_map);
     if (map) this.element.insertBefore(map, this.element.lastElementChild);
@@ -94,14 +95,12 @@ export class ResultPage implements Page {
       h("p", { class: knot.held || knot.security_newton === null ? "" : "alarm" }, knot.held ? icon.pass() : knot.security_newton === null ? icon.info() : icon.warn(), " ", pull));
   }
 
-  /// What the simulator estimates of the task's rating scale, and the way to a rater's form.
-  private scaleCard(result: Result, id: string | null): HTMLElement | null {
-    const { scale } = result;
-    if (!scale) return null;
+  /// What the simulator estimates of one of the task's rating scales, and with `id` the way to the raters' forms.
+  private scaleCard(scale: Scale, id: string | null): HTMLElement {
     const known = scale.items.filter((item) => item.estimate !== null), sum = known.reduce((total, item) => total + (item.estimate ?? 0), 0);
     const rows = scale.items.map((item) => h("tr", {}, h("th", { scope: "row" }, item.title), h("td", { class: "number" }, item.estimate === null ? "–" : `${item.estimate} / ${scale.most}`), h("td", { class: "quiet" }, item.why)));
-    return h("section", { class: "panel scale", "aria-labelledby": "scale-title" }, h("h2", { id: "scale-title" }, scale.title),
-      h("p", { class: "alarm" }, `${scale.label.charAt(0).toUpperCase()}${scale.label.slice(1)}: ${sum} of ${known.length * scale.most} points of the items that can be estimated; ${scale.items.length - known.length} of ${scale.items.length} items are left to a rater.`),
+    return h("section", { class: "panel scale", "aria-labelledby": `scale-${scale.name}` }, h("h2", { id: `scale-${scale.name}` }, scale.title),
+      h("p", { class: "alarm" }, `${scale.label.charAt(0).toUpperCase()}${scale.label.slice(1)}: ${sum} of ${known.length * scale.most} points of the items that can be estimated; ${scale.items.length - known.length} of ${scale.items.length} items are left to a rater. ${better(scale)}`),
       h("table", {}, h("thead", {}, h("tr", {}, ...["Item", "Estimate", "Rests on"].map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...rows)), h("p", { class: "quiet" }, scale.source),
       id ? h("p", { class: "buttons" }, h("a", { class: "button primary", href: `#/rate/${encodeURIComponent(id)}` }, "Rate"), h("a", { class: "button", href: "#/agreement" }, "Agreement")) : null);
   }
