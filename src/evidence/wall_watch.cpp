@@ -6,23 +6,17 @@
 
 #include "physics/thread_grasp.h"
 #include "world/needle_model.h"
-#include "world/surface_touch.h"
 #include "world/vessel_model.h"
+#include "world/wire_contact.h"
 
 namespace filum {
 namespace {
 
 constexpr double kSpacing = 10e-6;    // [m], of samples: the middle of a wall of 25 um is not missed
-constexpr double kFades = 0.2e-3;     // [m], beyond kTrackReach, over which a needle's touches come to their stiffness (wire_contact.cpp)
 constexpr double kTouchReach = 0.135e-3;  // [m]: touches are looked for every 0.1 mm, and none within 35 um of another
 constexpr double kTouchShare = 0.5;   // of a sample's depth that the touch that draws it back has at least
 constexpr double kOnePlace = 0.1e-3;  // [m], of the strand, between samples of one place
 constexpr double kSamePlace = 0.2e-3;  // [m], on the strand or the wall, by which a place may have gone in a step
-
-Vec3 at_arc(const RodState& t, double arc) {
-  const auto [edge, f] = locate_arc(t, arc);
-  return (1.0 - f) * t.x.col(edge) + f * t.x.col(edge + 1);
-}
 
 }  // namespace
 
@@ -57,7 +51,7 @@ void WallWatch::find_tracks(const State& s) {
     const NeedleTrack& track = t.tracks[static_cast<std::size_t>(i)];
     if (track.n == 0) continue;
     const double a = track.knots[0].strand, b = track.knots[static_cast<std::size_t>(track.n - 1)].strand;
-    const auto reach = [](double strand) { return strand > 0.0 ? kTrackReach + kFades : kTrackReach; };
+    const auto reach = [](double strand) { return strand > 0.0 ? kTrackReach + kTrackFades : kTrackReach; };
     const double low = std::min(a, b), high = t.open == i ? needle_.length() : std::max(a, b);
     tracks_.push_back({low - reach(low), high + reach(high)});
   }

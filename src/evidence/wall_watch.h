@@ -3,7 +3,7 @@
 //
 // The strand is looked at every 10 um where it is near the tissue. A sample is deep in it where less than kDeepShare of the tissue's thickness, measured there from side to side
 // through the sample, lies between it and neither side: what goes through a wall comes by there however it slants, what is pressed into a surface or cuts across a rim does not.
-// Left alone are stretches within the reach of a track (kTrackReach, of a needle also kFades; beyond the needle's point while a track is open), and what a touch draws back the way
+// Left alone are stretches within the reach of a track (kTrackReach, of a needle also kTrackFades; beyond the needle's point while a track is open), and what a touch draws back the way
 // it came: one near by, whose own place on the strand is half as deep below where it went in, and that none pushes against from the other side. Each place is followed, by the strand or by the wall, for as long as it stays.
 // Neglects: what goes in and through between two steps, elements that are gone, what lies less than kDeepShare deep. Test: wall_watch_test.
 

@@ -73,5 +73,10 @@ int grasp_between(const Pads& pads, const Pose& X_WT, int tool, const RodState& 
 
 /// Edge and fraction of a material coordinate [m].
 std::pair<int, double> locate_arc(const RodState& s, double arc) noexcept;
+/// [m], where that place of the thread is.
+inline Vec3 at_arc(const RodState& s, double arc) noexcept {
+  const auto [edge, f] = locate_arc(s, arc);
+  return (1.0 - f) * s.x.col(edge) + f * s.x.col(edge + 1);
+}
 
 }  // namespace filum

@@ -12,11 +12,6 @@ constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands 
 constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
-Vec3 at_arc(const RodState& t, double arc) noexcept {
-  const auto [edge, f] = locate_arc(t, arc);
-  return (1.0 - f) * t.x.col(edge) + f * t.x.col(edge + 1);
-}
-
 bool parted(const RodState& t, double arc) noexcept {
   const auto [edge, f] = locate_arc(t, arc);
   return t.alive[edge] == 0 && f > 1e-6 && f < 1.0 - 1e-6;

@@ -10,7 +10,6 @@ constexpr double kSpacing = 0.1e-3;   // [m], of samples at most: less than a wa
 constexpr double kAtPoint = 0.4e-3;   // [m], before the point, that are the point's own
 constexpr double kAhead = 30e-6;      // [m], by which a face may still be away at the start of its step
 constexpr double kLeft = 10e-6;       // [m], by which a wire has left what it touched
-constexpr double kFades = 0.2e-3;     // [m], beyond kTrackReach, over which a touch comes to its stiffness
 
 }  // namespace
 
@@ -58,7 +57,7 @@ void WireContact::find_shares(const TrackState& tracks) noexcept {
     for (int k = 0; k < n_; ++k) {
       const double away = std::max(from - k * spacing_, k * spacing_ - to);
       double& share = share_[static_cast<std::size_t>(k)];
-      share = std::min(share, std::clamp((away - kTrackReach) / kFades, 0.0, 1.0));
+      share = std::min(share, std::clamp((away - kTrackReach) / kTrackFades, 0.0, 1.0));
     }
   }
 }

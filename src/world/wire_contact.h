@@ -17,6 +17,7 @@
 namespace filum {
 
 inline constexpr int kMostWireSamples = 96;
+inline constexpr double kTrackFades = 0.2e-3;  // [m], beyond kTrackReach, over which a touch comes to its stiffness
 
 class WireContact {
  public:

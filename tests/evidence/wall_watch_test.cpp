@@ -103,8 +103,7 @@ TEST(WallWatch, ThreadThatATouchDrawsBackIsLeftAloneAndOneThatRestsOnTheFarSideI
       SurfaceTouch& touch = touches.touches[static_cast<std::size_t>(touches.n++)];
       touch.arc = sewn.whole() + b.strand;
       touch.at = b.at;
-      const auto [edge, f] = locate_arc(sewn.state.thread, touch.arc);
-      const Vec3 x = (1.0 - f) * sewn.state.thread.x.col(edge) + f * sewn.state.thread.x.col(edge + 1);
+      const Vec3 x = at_arc(sewn.state.thread, touch.arc);
       touch.normal = side * (wall.on_triangle(sewn.state.tissue.wall, touch.at) - x).normalized();
     }
     watch.look(sewn.state);
