@@ -24,6 +24,7 @@ Mat3 plane_stiffness(const RodTether& t, const Vec3& d) noexcept {
   const Mat3 plane = t.along * t.along.transpose() + t.across * t.across.transpose();
   const double length = slip.norm();
   if (!slips(t, length)) return t.stick * plane;
+  if (t.turned) return t.limit / length * plane;
   return t.limit / length * (plane - slip * slip.transpose() / (length * length));
 }
 
@@ -36,6 +37,8 @@ void RodTethers::locate(const RodState& s) noexcept {
     if (!t.at_end) std::tie(t.edge, t.s) = locate_arc(s, t.arc);
     t.force.setZero();
     t.slid = 0.0;
+    t.slip.setZero();
+    t.turned = false;
   }
 }
 
@@ -59,6 +62,8 @@ void RodTethers::add_gradient(const Points& x, double dt, Eigen::Matrix4Xd& grad
     if (in_plane(t)) {
       const Vec3 slip = slip_of(t, d);
       const double length = slip.norm();
+      t.turned = t.turned || slip.dot(t.slip) < 0.0;
+      t.slip = slip;
       t.force -= slips(t, length) ? Vec3(t.limit / length * slip) : Vec3(t.stick * slip);
       t.slid = std::max(0.0, length - t.limit / t.stick);
     } else if (const double u = d.dot(t.along); resists(t, u)) {

@@ -7,7 +7,9 @@
 // that thread and body move as if they were solved together (static condensation; exact for a linear body). phi is Coulomb friction
 // along the thread with an elastic stick range (friction.h): k_t u^2/2 up to the limit, |u| times the limit beyond; c is a speed term.
 // With `across` the tether is a surface: friction acts in the plane of both directions, u being the length of the slip (isotropic Coulomb), without drag, and
-// K only pushes, along x across.
+// K only pushes, along x across. Newton's tangent of a slip has no stiffness along it: from a slip the iteration goes past the place where friction would stick, is
+// thrown back, and so on. Once a slip has turned round within a step, its matrix is that of the parabola that touches the energy there and lies above it
+// everywhere, limit/|u| in the whole plane (majorant: Hunter & Lange, Am. Stat. 58:30, 2004), whose steps never lead past the least.
 // A ring stays where it is and the thread slides through it: its material coordinate goes back by what was slid.
 // Neglects: bending moments at a held point. Test: rod_tether_test.
 
@@ -35,6 +37,9 @@ struct RodTether {
   double s = 0.0;
   Vec3 force = Vec3::Zero();         // [N], on the thread
   double slid = 0.0;                 // [m], of the thread through the ring, towards growing arc; in a plane its length
+  // Of the step's iterations
+  Vec3 slip = Vec3::Zero();          // [m], in a plane
+  bool turned = false;               // it has turned round
 };
 
 class RodTethers {

@@ -21,8 +21,6 @@ constexpr double kQuiet = 0.1;       // of the tolerance: below this a step need
 constexpr double kLonger = 1.3;      // than the step taken last: more is not tried at first
 constexpr double kFirm = 5.0;        // times the matrix at rest: with 1 the steps of a wall at work overshoot, most of them to a third (DECISIONS)
 constexpr double kBedding = 0.006;   // of the mean diagonal of the elements' matrix
-constexpr double kStick = 0.5;           // of a push's stiffness: its friction before it slips
-constexpr double kDeepPush = 20e-6;      // [m], overlap of a push beyond which friction does not grow
 constexpr double kMeetingReach = 0.5;   // of the wall's thickness
 constexpr double kMeetingShare = 0.1;   // stiffness of a node against a face, of lambda times thickness: a cube of the wall a tenth as wide as high
 constexpr double kLeastStretch = 0.3, kMostStretch = 16.0;  // [-], det F and |F|^2 of a node beyond which the first matrix is only turned
@@ -159,72 +157,33 @@ WallState VesselWall::first_state() const {
   s.clamp = clamp_;
   s.history.s.setZero(3 * s.x.cols(), options_.memory);
   s.history.y = s.history.s;
+  s.history.products.setZero(options_.memory, options_.memory);
+  s.history.least.setZero(options_.memory);
   return s;
 }
 
-bool VesselWall::add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness) noexcept {
-  if (n_loads_ == kMostLoads || at.element < 0) return false;
-  Load& l = loads_[static_cast<std::size_t>(n_loads_++)];
-  l.node = mesh_.elements[static_cast<std::size_t>(at.element)];
-  l.weight = corner_weights(at.local);
-  l.force = force;
-  l.stiffness = stiffness;
-  l.at = position(state, at);
-  l.one_sided = l.sticks = false;
-  l.slip = {};
-  return true;
-}
-
 bool VesselWall::add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness, const WallSlip& slip) noexcept {
-  if (!add_load(state, at, force, stiffness)) return false;
-  loads_[static_cast<std::size_t>(n_loads_ - 1)].slip = slip;
-  return true;
+  return at.element >= 0 && add(WallLoad::spring(place_of(at), state.x, force, stiffness, slip)) >= 0;
 }
 
-int VesselWall::add_push(const WallState& state, const WallPoint& at, const Vec3& normal, double depth, double stiffness, double friction,
+int VesselWall::add_push(const WallState& state, const WallPoint& at, const WallStand& stand) noexcept {
+  return at.element < 0 ? -1 : add(WallLoad::stop(place_of(at), state.x, stand));
+}
+
+int VesselWall::add_ball(const WallState& state, const WallCrossing& place, const Vec3& centre, double radius, double stiffness, double friction,
                          const Vec3& carried) noexcept {
-  const double limit = friction * stiffness * std::clamp(depth, 0.0, kDeepPush), stick = limit > 0.0 ? kStick * stiffness : 0.0;
-  const Mat3 along = normal * normal.transpose();
-  if (!add_load(state, at, Vec3::Zero(), Mat3(stiffness * along + stick * (Mat3::Identity() - along)))) return -1;
-  Load& l = loads_[static_cast<std::size_t>(n_loads_ - 1)];
-  l.one_sided = true;
-  l.normal = normal;
-  l.depth = depth;
-  l.k = stiffness;
-  l.pushed = 0.0;
-  l.stick = stick;
-  l.limit = limit;
-  l.carried = carried - carried.dot(normal) * normal;
-  return n_loads_ - 1;
+  const WallStand stand{place.away, radius - place.fraction, stiffness, friction, carried};
+  if (place.fraction < 0.0) return add_push(state, place.point, stand);
+  return add(WallLoad::ball(triangles()[static_cast<std::size_t>(place.triangle)], place.weights, state.x, stand, centre, radius));
 }
 
-Vec3 VesselWall::Load::moved(const Points& x) const noexcept {
-  Vec3 sum = -at;
-  for (int a = 0; a < 8; ++a) sum += weight[a] * x.col(node[static_cast<std::size_t>(a)]);
-  return sum;
+int VesselWall::add(const WallLoad& load) noexcept {
+  if (n_loads_ == kMostLoads) return -1;
+  loads_[static_cast<std::size_t>(n_loads_)] = load;
+  return n_loads_++;
 }
 
-Vec3 VesselWall::Load::answer(const Vec3& moved, double& energy) noexcept {
-  if (!one_sided) {
-    const Vec3 spring = stiffness * moved;
-    energy -= (force - 0.5 * spring).dot(moved);
-    if (slip.stick <= 0.0) return force - spring;
-    const double pull = slip.force - slip.stick * slip.along.dot(moved), held = std::clamp(pull, slip.low, slip.high);
-    sticks = pull > slip.low && pull < slip.high;
-    energy += (pull - 0.5 * held) * held / slip.stick;
-    return force - spring + held * slip.along;
-  }
-  const double overlap = std::max(0.0, depth + normal.dot(moved));
-  pushed = k * overlap;
-  energy += 0.5 * pushed * overlap;
-  force = -pushed * normal;
-  if (limit <= 0.0) return force;
-  const Vec3 slip = moved - moved.dot(normal) * normal - carried;
-  const double length = slip.norm(), give = limit / stick;
-  energy += length < give ? 0.5 * stick * length * length : limit * (length - 0.5 * give);
-  force -= (length < give ? stick : limit / length) * slip;
-  return force;
-}
+WallPlace VesselWall::place_of(const WallPoint& at) const noexcept { return {mesh_.elements[static_cast<std::size_t>(at.element)], corner_weights(at.local)}; }
 
 void VesselWall::find_frames(const Points& x) noexcept {
   for (std::size_t i = 0; i < turn_.size(); ++i) {
@@ -281,10 +240,9 @@ double VesselWall::evaluate(const WallState& state) noexcept {
   }
   energy += meetings_.add_forces(x, trial_elastic_);
   r += trial_elastic_;
-  for (int k = 0; k < n_loads_; ++k) {
-    Load& l = loads_[static_cast<std::size_t>(k)];
-    const Vec3 f = l.answer(l.moved(x), energy);
-    for (int a = 0; a < 8; ++a) r.col(l.node[static_cast<std::size_t>(a)]) += l.weight[a] * f;
+  for (WallLoad& l : loads()) {
+    energy += l.answer(x);
+    l.add_to(r);
   }
   for (const int i : mesh_.held) r.col(i).setZero();
   return r.allFinite() ? energy : std::numeric_limits<double>::infinity();
@@ -293,17 +251,16 @@ double VesselWall::evaluate(const WallState& state) noexcept {
 void VesselWall::gather_springs() noexcept {
   const StageScope stage("wall: springs");
   springs_.gather_again();
-  for (int k = 0; k < n_loads_; ++k) {
-    Load& l = loads_[static_cast<std::size_t>(k)];
-    l.in_matrix = l.stiff() && springs_.add({l.node, l.weight, l.present()}, turn_, matrix_);
-    l.stuck_in_matrix = l.sticks;
+  for (WallLoad& l : loads()) {
+    l.gathered = l.phase();
+    if (const Mat3 k = l.felt(); l.gathered == 2 || k.trace() > kStiff) springs_.add({l.place().node, l.place().weight, k}, turn_, matrix_);
   }
   springs_.prepare(matrix_);
 }
 
 /// Has something that stands against the wall come to touch it, or left it?
-bool VesselWall::springs_stale() const noexcept {
-  return std::any_of(loads_.begin(), loads_.begin() + n_loads_, [](const Load& l) { return l.one_sided ? l.in_matrix != l.stiff() : l.stuck_in_matrix != l.sticks; });
+bool VesselWall::springs_stale() noexcept {
+  return std::ranges::any_of(loads(), [](const WallLoad& l) { return l.phase() != l.gathered; });
 }
 
 /// b becomes Q (P + springs)^-1 Q^T b.
@@ -318,25 +275,21 @@ void VesselWall::precondition(Eigen::VectorXf& b) noexcept {
   for (const int i : mesh_.held) b.segment<3>(3 * i).setZero();
 }
 
-/// Stiffness of a load as the pairs and the first matrix should know it. [N/m]
-Mat3 VesselWall::Load::felt() const noexcept { return one_sided && pushed <= 0.0 ? Mat3(Mat3::Zero()) : present(); }
-
 /// What the pairs of earlier steps say with the springs of this one.
 void VesselWall::recall(const WallHistory& h) noexcept {
   const StageScope stage("wall: recall");
-  pairs_.note_all(h.s, h.y);
-  for (int n = 0; n < n_loads_; ++n) loads_[static_cast<std::size_t>(n)].counted.setZero();
+  pairs_.take(h.y, h.products, h.least);
+  for (WallLoad& l : loads()) l.counted = {};
   count_springs(h);
 }
 
 /// Brings the pairs up to date with what has come to touch the wall, or left it, since they were last asked.
 void VesselWall::count_springs(const WallHistory& h) noexcept {
-  for (int n = 0; n < n_loads_; ++n) {
-    Load& l = loads_[static_cast<std::size_t>(n)];
-    const Mat3 now = l.felt();
-    if (now == l.counted) continue;
-    pairs_.stiffen(h.s, l.node, l.weight, now - l.counted);
-    l.counted = now;
+  for (WallLoad& l : loads()) {
+    if (l.phase() == l.counted.phase) continue;
+    if (l.counted.phase != 0) pairs_.stiffen(h.s, l.counted.place, -l.counted.stiffness);
+    l.counted = {l.phase(), l.place(), l.felt()};
+    if (l.counted.phase != 0) pairs_.stiffen(h.s, l.counted.place, l.counted.stiffness);
   }
   pairs_.count(h.n, h.newest);
 }
@@ -374,7 +327,7 @@ bool VesselWall::advance(const WallState& state) noexcept {
   return false;
 }
 
-/// A new pair says what elements and inertia answered; what touches the wall comes and goes and is counted by itself.
+/// To this step a new pair says what everything answered; to those to come what elements and inertia did: what touches the wall comes and goes.
 void VesselWall::add_pair(WallHistory& h) noexcept {
   const int p = (h.newest + 1) % options_.memory;
   h.s.col(p) = (flat(trial_x_) - flat(x_)).cast<float>();
@@ -382,15 +335,8 @@ void VesselWall::add_pair(WallHistory& h) noexcept {
   for (int i = 0; i < inertia_.size(); ++i) h.y.col(p).segment<3>(3 * i) += static_cast<float>(inertia_[i]) * h.s.col(p).segment<3>(3 * i);
   h.newest = p;
   h.n = std::min(h.n + 1, options_.memory);
-  pairs_.answer(p) = h.y.col(p);
-  for (int n = 0; n < n_loads_; ++n) {
-    const Load& l = loads_[static_cast<std::size_t>(n)];
-    if (l.counted.isZero(0.0)) continue;
-    Vec3 at = Vec3::Zero();
-    for (int a = 0; a < 8; ++a) at += l.weight[a] * h.s.col(p).segment<3>(3 * l.node[static_cast<std::size_t>(a)]).cast<double>();
-    const Vec3 f = l.counted * at;
-    for (int a = 0; a < 8; ++a) pairs_.answer(p).segment<3>(3 * l.node[static_cast<std::size_t>(a)]) += (l.weight[a] * f).cast<float>();
-  }
+  WallPairs::note(h.s, h.y, p, h.products, h.least);
+  pairs_.answer(p) = (flat(residual_) - flat(trial_residual_)).cast<float>();
   pairs_.note(h.s, p);
   pairs_.count(h.n, h.newest);
 }
@@ -435,8 +381,7 @@ void VesselWall::take_forces() noexcept {
 
 /// Loads as they are at x, where all else is known already.
 void VesselWall::answer_loads(const Points& x) noexcept {
-  double energy = 0.0;
-  for (int k = 0; k < n_loads_; ++k) loads_[static_cast<std::size_t>(k)].answer(loads_[static_cast<std::size_t>(k)].moved(x), energy);
+  for (WallLoad& l : loads()) l.answer(x);
 }
 
 /// What the line search found is where the wall is now.

@@ -9,13 +9,14 @@
 // 10:1079, 2000). What they hold is the elements' part and that of edges that meet; springs are added as they touch and let go, within a step, too.
 // Follower pressure on inner faces.
 // Loads at material points are f + k (x_0 - x), x_0 where the point was when the load was given; what rubs or stands against the wall is part of the
-// step's energy with the bounds of its force (WallSlip, add_push): a wall this light goes all the way that a force kept for the step drives it, and
+// step's energy with the bounds of its force (wall_load.h): a wall this light goes all the way that a force kept for the step drives it, and
 // comes back in the next.
 // State is complete: same state, same loads, same next state. A step allocates nothing.
 // Neglects: viscoelasticity (a damps against the surroundings only), fluid inertia. Tests: vessel_wall_test, vessel_wall_surface_test.
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "collision/surface_tree.h"
@@ -23,6 +24,7 @@
 #include "physics/vessel_wall_matrix.h"
 #include "physics/vessel_wall_pairs.h"
 #include "physics/vessel_wall_springs.h"
+#include "physics/wall_load.h"
 #include "physics/wall_meeting.h"
 #include "physics/wall_state.h"
 
@@ -49,15 +51,6 @@ struct WallSummary {
   double residual = 0.0;       // [N]
 };
 
-/// Dry friction of what slides through a material point, along `along`: force - stick m within [low, high] as the point moves by m. A force that stayed what
-/// it was would drag a soft wall far past what it rubs on, to be dragged back in the next step.
-struct WallSlip {
-  Vec3 along = Vec3::Zero();   // unit
-  double force = 0.0;          // [N], on the wall at the start of its step
-  double stick = 0.0;          // [N/m]
-  double low = 0.0, high = 0.0;  // [N]
-};
-
 struct WallCrossing {
   bool found = false;
   WallPoint point;
@@ -66,6 +59,7 @@ struct WallCrossing {
   Vec3 normal = Vec3::Zero();  // unit, outward from the tissue, of the face
   Vec3 away = Vec3::Zero();    // unit, of what is nearest: in which the distance grows outward; at a rim, a ridge or in a fold not the normal of either face
   int triangle = -1;           // of triangles()
+  Vec3 weights = Vec3::Zero(); // of its corners
   int layer = 0;
 };
 
@@ -81,8 +75,7 @@ class VesselWall {
   // --- the coming step ---------------------------------------------------------------------------------------------
   void clear_loads() noexcept { n_loads_ = 0; }
   /// Force [N] and stiffness [N/m] (symmetric positive semidefinite) at a material point. At most kMostLoads; more are refused (false).
-  bool add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness = Mat3::Zero()) noexcept;
-  bool add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness, const WallSlip& slip) noexcept;
+  bool add_load(const WallState& state, const WallPoint& at, const Vec3& force, const Mat3& stiffness = Mat3::Zero(), const WallSlip& slip = {}) noexcept;
   bool add_load(const WallState& state, const WallPoint& at, const Vec3& force, double stiffness) noexcept {
     return add_load(state, at, force, Mat3(stiffness * Mat3::Identity()));
   }
@@ -90,10 +83,12 @@ class VesselWall {
   /// point gives way along -normal, never pulls. Part of the step's own equilibrium: given as a load it would be on in one step and off in the next.
   /// With `friction` it drags the point along as it moves by `carried` [m] in the step: Coulomb, by the normal force at the step's start, creeping
   /// (nothing is remembered). Returns a number to ask push() with, -1 if there is no room.
-  int add_push(const WallState& state, const WallPoint& at, const Vec3& normal, double depth, double stiffness, double friction = 0.0,
-               const Vec3& carried = Vec3::Zero()) noexcept;
+  int add_push(const WallState& state, const WallPoint& at, const WallStand& stand) noexcept;
+  /// A ball that stands, its centre [m] where it is at the end of the step, against the face of a place that around() found about it: nearest to it wherever
+  /// that is within the step. Inside the tissue it stands against the material point. The rest as add_push().
+  int add_ball(const WallState& state, const WallCrossing& place, const Vec3& centre, double radius, double stiffness, double friction, const Vec3& carried) noexcept;
   /// [N], of a push on the wall at the end of the last step; 0 for -1.
-  Vec3 push(int number) const noexcept { return number < 0 ? Vec3(Vec3::Zero()) : loads_[static_cast<std::size_t>(number)].force; }
+  Vec3 push(int number) const noexcept { return number < 0 ? Vec3(Vec3::Zero()) : loads_[static_cast<std::size_t>(number)].force(); }
   /// Where the clamp of a part goes during the step; held nodes move with it. Stays until told otherwise.
   void place_clamp(int part, const Pose& X_WC) noexcept { clamp_[static_cast<std::size_t>(part)] = X_WC; }
   /// Transmural pressure [Pa] on the inner faces of a part. Stays until told otherwise.
@@ -120,8 +115,8 @@ class VesselWall {
   WallCrossing crossing(const WallState& state, const Vec3& a, const Vec3& b, double from = 0.0) const noexcept;
   /// Material point of the surface nearest to q within `reach`; fraction is then the distance [m], negative inside the tissue.
   WallCrossing nearest(const WallState& state, const Vec3& q, double reach) const noexcept;
-  /// Places where a ball about q of this radius meets the surface or nearly does: the feet of q on the faces and their corners, the nearest first (in a
-  /// hollow it rests on several); only the nearest if q is inside the tissue. Returns how many, at most `room`.
+  /// Triangles that a ball about q of this radius meets or nearly does, each with the place that is nearest to q, the nearest first; only that if q is inside
+  /// the tissue. Returns how many, at most `room`.
   int around(const WallState& state, const Vec3& q, double radius, WallCrossing* places, int room) const noexcept;
   /// Material point of the part at q, which lies in the tissue near the point `guess` (Newton's method). found: q is inside.
   WallPoint locate(const WallState& state, const Vec3& q, const WallPoint& guess) const noexcept;
@@ -135,29 +130,11 @@ class VesselWall {
   static constexpr double kStiff = 1.0;  // [N/m], springs above this come into the first matrix
 
  private:
-  struct Load {
-    std::array<int, 8> node;
-    Eigen::Matrix<double, 8, 1> weight;
-    Vec3 force, at;
-    Mat3 stiffness;
-    bool in_matrix = false, stuck_in_matrix = false;
-    bool one_sided = false;          // then by these, and force is what came out
-    Vec3 normal;
-    double depth = 0.0, k = 0.0, pushed = 0.0;  // [m], [N/m], [N]
-    double stick = 0.0, limit = 0.0;            // [N/m], [N], of friction
-    Vec3 carried;                               // [m], by which the rigid thing moves in this step
-    WallSlip slip;
-    bool sticks = false;
-    Mat3 counted;                    // [N/m], as the pairs have it
-    Mat3 felt() const noexcept;      // [N/m], as they should
-    Mat3 present() const noexcept { return sticks ? Mat3(stiffness + slip.stick * slip.along * slip.along.transpose()) : stiffness; }  // [N/m]
-    Vec3 moved(const Points& x) const noexcept;               // [m], of its place
-    Vec3 answer(const Vec3& moved, double& energy) noexcept;  // [N], on the wall
-    bool stiff() const noexcept { return one_sided ? pushed > 0.0 : sticks || stiffness.trace() > kStiff; }
-  };
-
   void gather_springs() noexcept;
-  bool springs_stale() const noexcept;
+  std::span<WallLoad> loads() noexcept { return {loads_.data(), static_cast<std::size_t>(n_loads_)}; }
+  int add(const WallLoad& load) noexcept;
+  WallPlace place_of(const WallPoint& at) const noexcept;
+  bool springs_stale() noexcept;
   void find_frames(const Points& x) noexcept;
   void guess(const WallState& state) noexcept;
   bool begin(const WallState& state) noexcept;
@@ -188,7 +165,7 @@ class VesselWall {
   SurfaceTree tree_;
   std::vector<Pose> clamp_;
   std::vector<double> pressure_;      // [Pa], of each part
-  std::vector<Load> loads_;
+  std::vector<WallLoad> loads_;
   int n_loads_ = 0;
   // scratch of a step
   Points x_, target_, residual_, trial_x_, trial_residual_, push_, trial_push_;  // push: of pressure

@@ -13,36 +13,36 @@ WallPairs::WallPairs(int n, int most) {
   least_.setZero(most);
   order_.reserve(static_cast<std::size_t>(most));
   each_.setZero(most);
-  square_.setZero(most, most);
   alpha_.setZero(most);
   gamma_.setZero(most);
   moved_.setZero(3, most);
   pulled_.setZero(3, most);
 }
 
-void WallPairs::judge(const Eigen::MatrixXf& s, int p) noexcept {
-  least_[p] = kLeastCurvature * static_cast<double>(s.col(p).norm()) * static_cast<double>(answers_.col(p).norm());
+void WallPairs::note(const Eigen::MatrixXf& s, const Eigen::MatrixXf& answers, int p, Eigen::MatrixXd& products, Eigen::VectorXd& least) noexcept {
+  const auto y = answers.col(p);
+  for (int i = 0; i < s.cols(); ++i) products(i, p) = static_cast<double>(s.col(i).dot(y));  // the row says what is newer times what is older, which nobody asks
+  least[p] = kLeastCurvature * static_cast<double>(s.col(p).norm()) * static_cast<double>(y.norm());
 }
 
-void WallPairs::note(const Eigen::MatrixXf& s, int p) noexcept {
-  each_.noalias() = s.transpose() * answers_.col(p);
-  products_.col(p) = each_.cast<double>();  // the row says what is newer times what is older, which nobody asks
-  judge(s, p);
-}
+void WallPairs::note(const Eigen::MatrixXf& s, int p) noexcept { note(s, answers_, p, products_, least_); }
 
-void WallPairs::note_all(const Eigen::MatrixXf& s, const Eigen::MatrixXf& answers) noexcept {
+void WallPairs::take(const Eigen::MatrixXf& answers, const Eigen::MatrixXd& products, const Eigen::VectorXd& least) noexcept {
   answers_ = answers;
-  square_.noalias() = s.transpose() * answers_;
-  products_ = square_.cast<double>();
-  for (int p = 0; p < answers_.cols(); ++p) judge(s, p);
+  products_ = products;
+  least_ = least;
 }
 
-void WallPairs::stiffen(const Eigen::MatrixXf& s, const std::array<int, 8>& node, const Eigen::Matrix<double, 8, 1>& weight, const Mat3& stiffness) noexcept {
+void WallPairs::stiffen(const Eigen::MatrixXf& s, const WallPlace& place, const Mat3& stiffness) noexcept {
+  const auto each = [&](auto&& act) {
+    for (int a = 0; a < 8; ++a)
+      if (place.weight[a] != 0.0) act(3 * place.node[static_cast<std::size_t>(a)], static_cast<float>(place.weight[a]));
+  };
   moved_.setZero();
-  for (int a = 0; a < 8; ++a) moved_ += static_cast<float>(weight[a]) * s.middleRows<3>(3 * node[static_cast<std::size_t>(a)]);
+  each([&](int row, float weight) { moved_ += weight * s.middleRows<3>(row); });
   const Eigen::Matrix3f k = stiffness.cast<float>();
   for (int p = 0; p < pulled_.cols(); ++p) pulled_.col(p) = k * moved_.col(p);
-  for (int a = 0; a < 8; ++a) answers_.middleRows<3>(3 * node[static_cast<std::size_t>(a)]) += static_cast<float>(weight[a]) * pulled_;
+  each([&](int row, float weight) { answers_.middleRows<3>(row) += weight * pulled_; });
   for (int j = 0; j < pulled_.cols(); ++j)
     for (int i = 0; i < pulled_.cols(); ++i) products_(i, j) += static_cast<double>(moved_.col(i).dot(pulled_.col(j)));
 }

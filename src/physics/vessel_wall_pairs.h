@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "base/pose.h"
+#include "physics/wall_load.h"
 
 namespace filum {
 
@@ -21,10 +21,12 @@ class WallPairs {
   Eigen::MatrixXf::ColXpr answer(int p) noexcept { return answers_.col(p); }
   /// Pair p is new. The curvature must be positive, else a pair stays unused.
   void note(const Eigen::MatrixXf& s, int p) noexcept;
-  /// All are, with these answers.
-  void note_all(const Eigen::MatrixXf& s, const Eigen::MatrixXf& answers) noexcept;
-  /// What the answers would be with this much more stiffness [N/m] at a point between eight nodes. Then comes count().
-  void stiffen(const Eigen::MatrixXf& s, const std::array<int, 8>& node, const Eigen::Matrix<double, 8, 1>& weight, const Mat3& stiffness) noexcept;
+  /// The same of others' answers: its products with the moves, and the curvature below which it is not used [J].
+  static void note(const Eigen::MatrixXf& s, const Eigen::MatrixXf& answers, int p, Eigen::MatrixXd& products, Eigen::VectorXd& least) noexcept;
+  /// All are, with these answers and what note() found of them.
+  void take(const Eigen::MatrixXf& answers, const Eigen::MatrixXd& products, const Eigen::VectorXd& least) noexcept;
+  /// What the answers would be with this much more stiffness [N/m] at a place. Then comes count().
+  void stiffen(const Eigen::MatrixXf& s, const WallPlace& place, const Mat3& stiffness) noexcept;
   /// The last n pairs up to column `newest` of the ring count from now on.
   void count(int n, int newest) noexcept;
   void forget() noexcept { order_.clear(); }
@@ -35,14 +37,11 @@ class WallPairs {
   void after(const Eigen::MatrixXf& s, Eigen::VectorXf& z) noexcept;
 
  private:
-  void judge(const Eigen::MatrixXf& s, int p) noexcept;
-
   Eigen::MatrixXf answers_;           // Y
   Eigen::MatrixXd products_;          // s_i . y_j
   Eigen::VectorXd least_;             // [J], s . y below which a pair is not used
   std::vector<int> order_;            // columns, the oldest pair first
   Eigen::VectorXf each_;              // a number for each pair
-  Eigen::MatrixXf square_;
   Eigen::VectorXd alpha_, gamma_;
   Eigen::Matrix3Xf moved_, pulled_;   // of stiffen(): a column for each pair
 };

@@ -53,8 +53,13 @@ bool WallSprings::add(const WallSpring& spring, const std::vector<Mat3>& turn, c
     place = room();
     Spring& s = kept_[static_cast<std::size_t>(place)];
     s.given = spring;
-    for (std::size_t a = 0; a < 8; ++a)
-      s.blocks[a] = (spring.weight[static_cast<int>(a)] * turn[static_cast<std::size_t>(spring.node[a])]).cast<float>();
+    s.n = 0;
+    for (std::size_t a = 0; a < 8; ++a) {
+      const double weight = spring.weight[static_cast<int>(a)];
+      if (weight == 0.0) continue;
+      s.node[static_cast<std::size_t>(s.n)] = spring.node[a];
+      s.blocks[static_cast<std::size_t>(s.n++)] = (weight * turn[static_cast<std::size_t>(spring.node[a])]).cast<float>();
+    }
     Eigen::SelfAdjointEigenSolver<Mat3> eigen;
     eigen.computeDirect(spring.stiffness);
     s.root = (eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal()).cast<float>();
@@ -65,7 +70,7 @@ bool WallSprings::add(const WallSpring& spring, const std::vector<Mat3>& turn, c
 
 Eigen::Vector3f WallSprings::at(const Spring& s, const Eigen::Ref<const Eigen::VectorXf>& x) const noexcept {
   Eigen::Vector3f u = Eigen::Vector3f::Zero();
-  for (std::size_t a = 0; a < 8; ++a) u += s.blocks[a] * x.segment<3>(3 * s.given.node[a]);
+  for (std::size_t a = 0; a < s.corners().size(); ++a) u += s.blocks[a] * x.segment<3>(3 * s.node[a]);
   return u;
 }
 
@@ -73,7 +78,7 @@ void WallSprings::number_nodes() noexcept {
   for (const int i : nodes_) mark_[static_cast<std::size_t>(i)] = -1;
   nodes_.clear();
   for (int k = 0; k < n_; ++k)
-    for (const int i : spring(k).given.node) {
+    for (const int i : spring(k).corners()) {
       int& place = mark_[static_cast<std::size_t>(i)];
       if (place >= 0) continue;
       place = 3 * static_cast<int>(nodes_.size());
@@ -100,7 +105,7 @@ void WallSprings::gather_inverse(const WallMatrix& P) noexcept {
     }
   };
   for (int k = n_; k-- > 0;)  // those of the last springs first: couple() reads no further than it must
-    for (const int n : spring(k).given.node)
+    for (const int n : spring(k).corners())
       if (row_[static_cast<std::size_t>(n)] < 0) take_in(n);
 }
 
@@ -111,22 +116,22 @@ void WallSprings::couple(int j) noexcept {
   int used = 0;  // rows of near_ that are asked for
   for (int i = j; i < n_; ++i)
     if (known(active_[static_cast<std::size_t>(i)], column) == 0)
-      for (const int node : spring(i).given.node) used = std::max(used, row_[static_cast<std::size_t>(node)] + 3);
+      for (const int node : spring(i).corners()) used = std::max(used, row_[static_cast<std::size_t>(node)] + 3);
   bool ready = false;
   for (int i = j; i < n_; ++i) {
     const int row = active_[static_cast<std::size_t>(i)];
     if (known(row, column) != 0) continue;
     auto moved = moved_.topRows(used);
     if (!ready) moved.setZero();
-    for (std::size_t a = 0; a < 8 && !ready; ++a) {
+    for (std::size_t a = 0; a < s.corners().size() && !ready; ++a) {
       const Eigen::Matrix3f J = s.blocks[a].transpose() * s.root;
       for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < 3; ++r) moved.col(c) += J(r, c) * near_.col(row_[static_cast<std::size_t>(s.given.node[a])] + r).head(used);
+        for (int r = 0; r < 3; ++r) moved.col(c) += J(r, c) * near_.col(row_[static_cast<std::size_t>(s.node[a])] + r).head(used);
     }
     ready = true;
     const Spring& t = spring(i);
     Eigen::Matrix3f u = Eigen::Matrix3f::Zero();
-    for (std::size_t a = 0; a < 8; ++a) u += t.blocks[a] * moved.block<3, 3>(row_[static_cast<std::size_t>(t.given.node[a])], 0);
+    for (std::size_t a = 0; a < t.corners().size(); ++a) u += t.blocks[a] * moved.block<3, 3>(row_[static_cast<std::size_t>(t.node[a])], 0);
     pair_.block<3, 3>(3 * row, 3 * column) = t.root.transpose() * u;
     known(row, column) = 1;
   }
@@ -163,7 +168,7 @@ void WallSprings::correct(WallMatrix& P, Eigen::Ref<Eigen::VectorXf> x) noexcept
   for (int k = 0; k < n_; ++k) {
     const Spring& s = spring(k);
     const Eigen::Vector3f f = s.root * load.segment<3>(3 * k);
-    for (std::size_t a = 0; a < 8; ++a) share_.segment<3>(mark_[static_cast<std::size_t>(s.given.node[a])]) += s.blocks[a].transpose() * f;
+    for (std::size_t a = 0; a < s.corners().size(); ++a) share_.segment<3>(mark_[static_cast<std::size_t>(s.node[a])]) += s.blocks[a].transpose() * f;
   }
   P.subtract(nodes_, share_, x);
 }

@@ -6,6 +6,7 @@
 // cheap, the more so since what joins two springs is remembered for the step. Parts whose inverse is not kept go without. Test: vessel_wall_springs_test.
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "physics/vessel_wall_matrix.h"
@@ -43,7 +44,10 @@ class WallSprings {
 
   struct Spring {
     WallSpring given;
+    int n = 0;                              // corners whose weight is not zero
+    std::array<int, 8> node;                // these
     std::array<Eigen::Matrix3f, 8> blocks;  // of J
+    std::span<const int> corners() const noexcept { return {node.data(), static_cast<std::size_t>(n)}; }
     Eigen::Matrix3f root;                   // L
   };
   const Spring& spring(int k) const noexcept { return kept_[static_cast<std::size_t>(active_[static_cast<std::size_t>(k)])]; }

@@ -84,6 +84,7 @@ void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, co
   const std::array<std::size_t, 3> corner = triangle % 2 ? std::array<std::size_t, 3>{0, 2, 3} : std::array<std::size_t, 3>{0, 1, 2};
   c.found = true;
   c.triangle = triangle;
+  c.weights = weights;
   c.surface = face.surface;
   c.point.element = face.element;
   c.point.local.setZero();
@@ -168,30 +169,23 @@ WallCrossing VesselWall::nearest(const WallState& state, const Vec3& q, double r
 }
 
 int VesselWall::around(const WallState& state, const Vec3& q, double radius, WallCrossing* places, int room) const noexcept {
-  constexpr double kApart = 10e-6;  // [m], between two places
   if (room == 0) return 0;
   places[0] = nearest(state, q, radius);
   if (!places[0].found || places[0].fraction < 0.0) return places[0].found ? 1 : 0;
   int n = 1;
-  const auto take = [&](int k, const Vec3& p, const Vec3& weights) {
-    const double distance = (p - q).norm();
-    if (distance > radius || (n == room && distance >= places[n - 1].fraction)) return;
-    for (int j = 0; j < n; ++j)
-      if ((position(state, places[j].point) - p).norm() < kApart) return;
+  for (const int k : found_) {
+    const Triangle& t = triangles()[static_cast<std::size_t>(k)];
+    if (k == places[0].triangle || state.soundness[static_cast<std::size_t>(mesh_.faces[static_cast<std::size_t>(k / 2)].element)] == 0.0) continue;
+    const TrianglePoint c = closest_on_triangle(q, state.x.col(t[0]), state.x.col(t[1]), state.x.col(t[2]));
+    const double distance = (c.point - q).norm();
+    if (distance > radius || (n == room && distance >= places[n - 1].fraction)) continue;
     n = std::min(n + 1, room);
     int j = n - 1;
     for (; j > 1 && places[j - 1].fraction > distance; --j) places[j] = places[j - 1];  // the nearest first
-    describe(mesh_, triangles(), state.x, k, weights, places[j]);
+    describe(mesh_, triangles(), state.x, k, c.weights, places[j]);
     places[j].fraction = distance;
-    places[j].away = away_from(places[j], p, q, distance);
+    places[j].away = away_from(places[j], c.point, q, distance);
     places[j].layer = layer_at(places[j].point);
-  };
-  for (const int k : found_) {
-    const Triangle& t = triangles()[static_cast<std::size_t>(k)];
-    if (state.soundness[static_cast<std::size_t>(mesh_.faces[static_cast<std::size_t>(k / 2)].element)] == 0.0) continue;
-    const TrianglePoint c = closest_on_triangle(q, state.x.col(t[0]), state.x.col(t[1]), state.x.col(t[2]));
-    take(k, c.point, c.weights);
-    for (int corner = 0; corner < 3; ++corner) take(k, state.x.col(t[static_cast<std::size_t>(corner)]), Vec3::Unit(corner));
   }
   return n;
 }

@@ -18,6 +18,8 @@ struct WallPoint {
 struct WallHistory {
   int n = 0, newest = -1;
   Eigen::MatrixXf s, y;           // [m], [N], a column each
+  Eigen::MatrixXd products;       // [J], s_i . y_j of what is not newer and what is
+  Eigen::VectorXd least;          // [J], s . y below which a pair is not used
 };
 
 struct WallState {

@@ -170,12 +170,11 @@ void VesselContact::press(VesselWall& wall, const WallState& w, const std::vecto
       for (const double f : kOnJaw) {
         const Vec3 q = states[i].X_WT * (bars.a_T[b] + f * (bars.b_T[b] - bars.a_T[b]));
         const double radius = bars.r_a[b] + f * (bars.r_b[b] - bars.r_a[b]);
-        std::array<WallCrossing, 12> places;
+        std::array<WallCrossing, kMostPlaces> places;
         const int n = wall.around(w, q, radius + kAhead, places.data(), static_cast<int>(places.size()));
         for (int k = 0; k < n && static_cast<std::size_t>(n_pushes_) < pushes_.size(); ++k) {
-          const WallCrossing& near = places[static_cast<std::size_t>(k)];
           const Vec3 lever = q - states[i].X_WT.p, carried = wall.options().dt * (states[i].v + states[i].w.cross(lever));
-          const int number = wall.add_push(w, near.point, near.away, radius - near.fraction, law.stiffness, jaw_friction, carried);
+          const int number = wall.add_ball(w, places[static_cast<std::size_t>(k)], q, radius, law.stiffness, jaw_friction, carried);
           pushes_[static_cast<std::size_t>(n_pushes_++)] = {number, static_cast<int>(i), lever};
         }
       }

@@ -48,7 +48,8 @@ class VesselContact {
     Vec3 lever;                // [m], from the tool's tip
   };
 
-  std::array<Push, 216> pushes_{};  // up to twelve of each of three balls on each jaw of three tools
+  static constexpr int kMostPlaces = 24;            // of a ball: triangles that meet where it rests on them
+  std::array<Push, 18 * kMostPlaces> pushes_{};     // three balls on each jaw of three tools
   int n_pushes_ = 0;
   std::array<double, kMostTouches> come_out_{};  // [m], arcs of touches that end in this step: on their way out they pass the wall from within
   int n_come_out_ = 0;

@@ -96,17 +96,14 @@ void WireContact::follow(VesselWall& wall, const WallState& w, TouchState& s, co
 
 void WireContact::press(VesselWall& wall, const WallState& w, const SurfaceTouch& touch, int number, const TouchFooting& footing, double stiffness,
                         const Vec3& x, const Vec3& carried) noexcept {
-  std::array<WallCrossing, 8> places;
-  const auto against = [&](const WallPoint& at, const Vec3& normal, double depth) {
-    if (static_cast<std::size_t>(n_pushes_) == pushes_.size()) return;
-    pushes_[static_cast<std::size_t>(n_pushes_++)] = {wall.add_push(w, at, normal, depth, stiffness, law.friction, carried), number, stiffness};
+  const auto note = [&](int push) {
+    if (static_cast<std::size_t>(n_pushes_) < pushes_.size()) pushes_[static_cast<std::size_t>(n_pushes_++)] = {push, number, stiffness};
   };
-  if (!footing.slides || footing.near.fraction <= 0.0) return against(touch.at, touch.normal, std::min(kDeepest, footing.depth));
+  if (!footing.slides || footing.near.fraction <= 0.0)
+    return note(wall.add_push(w, touch.at, {touch.normal, std::min(kDeepest, footing.depth), stiffness, law.friction, carried}));
+  std::array<WallCrossing, 12> places;
   const int n = wall.around(w, x, law.radius + kAhead, places.data(), static_cast<int>(places.size()));
-  for (int k = 0; k < n; ++k) {
-    const WallCrossing& c = places[static_cast<std::size_t>(k)];
-    against(c.point, c.away, law.radius - c.fraction);
-  }
+  for (int k = 0; k < n; ++k) note(wall.add_ball(w, places[static_cast<std::size_t>(k)], x, law.radius, stiffness, law.friction, carried));
 }
 
 void WireContact::feel(const VesselWall& wall, TouchState& s) noexcept {

@@ -53,7 +53,7 @@ class WireContact {
     int number, touch;                            // of the wall; of the state
     double stiffness;                             // [N/m]
   };
-  std::array<Push, 4 * kMostTouches> pushes_{};
+  std::array<Push, 8 * kMostTouches> pushes_{};
   int n_pushes_ = 0;
   Pose before_;                                   // at the start of the step
   int first_ = 0;                                 // of its tethers

@@ -2,7 +2,7 @@
 """Writes a demonstration of anastomosis-8, stitch by stitch, each tried from the state that the one before ended in.
 
   sew_eight.py STATE.json [STITCHES]     (in an empty folder; FILUM_ROOT: the project, REHEARSAL: its build/tests/.../filum_rehearsal,
-                                          TASK: another task in which each stitch has a fresh suture and the clamp is turned on once;
+                                          TASK: another task of one stitch, or in which each stitch has a fresh suture and the clamp is turned on once;
                                           HINTS: a STATE.json of an earlier program, whose choices are tried first)
 
 The hands are those of sew_eight_hands.yaml, moved along with the cut edges as they are seen when a stitch begins (keys `at: { edge: N }`), with some lengths
@@ -25,10 +25,12 @@ OPENED = 'an earlier knot opened'
 PLACE = 21.0                                              # [degrees], most by which a stitch is beside its place
 
 
-def of_scene(field): return re.search(r'^%s: (.*)' % field, open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read(), re.M).group(1)
+def of_scene(field, default=None):
+    found = re.search(r'^ *%s: (.*)' % field, open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read(), re.M)
+    return found.group(1) if found else default
 
 
-STITCHES = int(of_scene('sutures').strip('"'))
+STITCHES = int(of_scene('sutures', '"1"').strip('"'))
 LOOP = 3.6 if STITCHES == 6 else 3.2                      # [mm], most of a knot's loop
 SLIDES = {8: (.7, .6, .8), 6: (.6, .55, .65)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
 
@@ -42,7 +44,7 @@ DEFAULT = dict(aside=0, enter=(0, 0), leave=(0, 0), press=(0, 0), take=3.65, cut
 def numbers(text): return [float(x) for x in re.findall(r'-?\d+\.?\d*', text)]
 
 
-TURNS = numbers(re.search(r'turns: \[(.*)\]', open('%s/curricula/%s/scene.yaml' % (ROOT, TASK)).read()).group(1))   # [degrees]; at 0 the vessel's 90 degrees lie on top
+TURNS = numbers(of_scene('turns', '0 deg'))   # [degrees]; at 0 the vessel's 90 degrees lie on top
 
 
 def read_template():

@@ -127,5 +127,33 @@ TEST(RodTether, EndGivesAsMuchAsWhatHoldsIt) {
   EXPECT_NEAR(rod.tethers.list[0].force.x(), series * 100e-6, 1e-3 * series * 100e-6);
 }
 
+/// A surface has gone on under a thread that friction can hold: a step finds where the thread sticks again.
+TEST(RodTether, WhatSlippedToAndFroSticks) {
+  int most = 0;
+  for (int k = 0; k < 40; ++k) {
+    RodState s = straight(12, 0.2e-3);
+    ImplicitRod rod(RodMaterial(), ContactMaterial(), 16);
+    RodMemory memory = rod.make_memory();
+    RodStepOptions o;
+    o.dt = 2e-3;
+    o.gravity.setZero();
+    for (int i = 0; i < 12; ++i) {
+      RodTether t;
+      t.arc = 0.2e-3 * i;
+      t.along = Vec3::UnitX();
+      t.across = Vec3::UnitY();
+      t.stiffness = 200.0 * Vec3::UnitZ() * Vec3::UnitZ().transpose();
+      t.stick = 400.0;
+      t.limit = 20e-6;
+      t.anchor = s.x.col(i) + 1e-6 * (1 + k) * Vec3(1e-3 * std::sin(3.0 * i + k), 1.0 + 3e-3 * std::cos(2.0 * i + k), -1.0 / (1 + k));
+      rod.tethers.list.push_back(t);
+    }
+    const RodStepSummary r = rod.step(s, memory, o);
+    EXPECT_TRUE(r.converged) << k;
+    most = std::max(most, r.iterations);
+  }
+  EXPECT_LE(most, 8) << "by Newton's matrix alone 20, and not there";
+}
+
 }  // namespace rod_tether_test
 }  // namespace filum

@@ -72,21 +72,43 @@ TEST(VesselWallPairs, SameAsTheTwoLoopsWhenTheRingHasGoneRound) {
   }
 }
 
-TEST(VesselWallPairs, AllAtOnceIsAsOneByOne) {
+TEST(VesselWallPairs, TakenTogetherTheyAreAsOneByOne) {
   Case c;
   Eigen::MatrixXf answers = Eigen::MatrixXf::Zero(c.n, c.most);
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(c.most, c.most);
+  Eigen::VectorXd least = Eigen::VectorXd::Zero(c.most);
   for (int k = 0; k < 4; ++k) {
     c.add(k, c.random());
     answers.col(k) = c.pairs.answer(k);
+    WallPairs::note(c.s, answers, k, products, least);
   }
   c.pairs.count(4, 3);
   const Eigen::VectorXd r = c.random(), expected = c.direction(r);
   WallPairs other(c.n, c.most);
-  other.note_all(c.s, answers);
+  other.take(answers, products, least);
   other.count(4, 3);
   c.pairs = other;
-  EXPECT_LT((c.direction(r) - expected).norm(), 1e-5 * expected.norm());
+  EXPECT_EQ((c.direction(r) - expected).norm(), 0.0);
   EXPECT_GT((c.P.llt().solve(r) - expected).norm(), 1e-2 * expected.norm());
+}
+
+/// A spring more is as if the matrix had it, of a place of three nodes and of none.
+TEST(VesselWallPairs, ASpringMoreStiffensAllAnswers) {
+  Case c, other;
+  WallPlace place;
+  place.node = {3, 5, 9, 3, 3, 3, 3, 3};
+  place.weight.head<3>() = Eigen::Vector3d(0.2, 0.3, 0.5);
+  const Mat3 stiffness = 7.0 * Vec3(1, 2, 2).normalized() * Vec3(1, 2, 2).normalized().transpose();
+  for (int k = 0; k < 4; ++k) c.add(k, c.random());
+  c.pairs.stiffen(c.s, place, stiffness);
+  c.pairs.count(4, 3);
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b)
+      other.A.block<3, 3>(3 * place.node[static_cast<std::size_t>(a)], 3 * place.node[static_cast<std::size_t>(b)]) += place.weight[a] * place.weight[b] * stiffness;
+  for (int k = 0; k < 4; ++k) other.add(k, other.random());
+  other.pairs.count(4, 3);
+  const Eigen::VectorXd r = c.random(), expected = other.direction(r);
+  EXPECT_LT((c.direction(r) - expected).norm(), 1e-4 * expected.norm());
 }
 
 TEST(VesselWallPairs, AnswerOfTheNewestPairGivesItsMove) {

@@ -182,7 +182,7 @@ TEST(VesselWall, APushIsOneSided) {
   const WallState before = wall.first_state();
   const Vec3 normal = wall.directions(before, at).col(2).normalized(), side = Vec3::UnitZ();
   WallState state = before;
-  const int number = wall.add_push(state, at, normal, 20e-6, 200.0, 0.02, 50e-6 * side);
+  const int number = wall.add_push(state, at, {normal, 20e-6, 200.0, 0.02, 50e-6 * side});
   ASSERT_TRUE(wall.step(state).converged);
   const Vec3 moved = wall.position(state, at) - wall.position(before, at), push = wall.push(number);
   EXPECT_GT(-normal.dot(moved), 1e-6);
@@ -192,7 +192,7 @@ TEST(VesselWall, APushIsOneSided) {
   expect_dead_load_is_same(before, state, at, push);
   wall.clear_loads();
   state = before;
-  const int apart = wall.add_push(state, at, normal, -2e-6, 200.0, 0.02, 50e-6 * side);
+  const int apart = wall.add_push(state, at, {normal, -2e-6, 200.0, 0.02, 50e-6 * side});
   ASSERT_TRUE(wall.step(state).converged);
   EXPECT_EQ(wall.push(apart), Vec3::Zero());
   EXPECT_LT((state.x - before.x).cwiseAbs().maxCoeff(), 1e-12);

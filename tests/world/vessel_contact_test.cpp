@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/rng.h"
 #include "tests/allocation_count.h"
 
 namespace filum {
@@ -207,6 +208,47 @@ TEST(VesselContact, ThreadHooksOverARimBetweenItsNodes) {
   ASSERT_EQ(touches.n, 1);
   EXPECT_NEAR(touches.touches[0].arc, 0.4e-3, 0.06e-3);
   EXPECT_GT(touches.touches[0].normal.z(), 0.9);
+}
+
+/// A jaw lies at rest on the cut edge of a stump whose elements are as long as it is thick. By how much the wall's nodes swing to and fro in a step once it has
+/// come to rest: their ways, but for what they get anywhere. [m]
+double swing_under_a_jaw(double aside, double beyond, double turn, double deep) {
+  WallOptions options;
+  options.max_iterations = 60;
+  TubeShape shape;
+  shape.around = 24;
+  shape.along = 18;
+  VesselWall wall(make_tube(shape), {{"wall", 1e-4, WallLaw::hooke(300e3, 0.45)}}, options);
+  WallState w = wall.first_state();
+  VesselContact contact(4);
+  const std::vector<InstrumentParameters> tools(1);
+  std::vector<InstrumentState> states(1);
+  states[0].angle = 0.0;
+  states[0].X_WT.q = Quat(Eigen::AngleAxisd(turn, Vec3::UnitY()) * Eigen::AngleAxisd(-0.45 * std::acos(-1.0), Vec3::UnitX()));  // its handle all but flat
+  states[0].X_WT.p = Vec3(aside, kRadius + tools[0].tip_radius - deep, 3e-3 + beyond);
+  constexpr int kSteps = 500, kWatched = 99;
+  Points begin, before;
+  Eigen::ArrayXd way = Eigen::ArrayXd::Zero(w.x.cols());
+  for (int k = 0; k < kSteps; ++k) {
+    wall.refit(w);
+    wall.clear_loads();
+    contact.press(wall, w, tools, states);
+    const bool converged = wall.step(w).converged;
+    EXPECT_TRUE(converged || k < kSteps - kWatched) << k;
+    if (k == kSteps - kWatched - 1) begin = w.x;
+    if (k >= kSteps - kWatched) way += (w.x - before).colwise().norm().transpose().array();
+    before = w.x;
+  }
+  return ((way - (w.x - begin).colwise().norm().transpose().array()) / kWatched).maxCoeff();
+}
+
+TEST(VesselContact, AnEdgeUnderAJawLiesStill) {
+  Rng rng(11);
+  for (int k = 0; k < 12; ++k) {
+    const double aside = rng.uniform(-0.2e-3, 0.2e-3), beyond = rng.uniform(-0.2e-3, 0.3e-3), turn = rng.uniform(-1.5, 1.5), deep = rng.uniform(20e-6, 120e-6);
+    const double swing = swing_under_a_jaw(aside, beyond, turn, deep);
+    EXPECT_LT(swing, 2e-6) << k << ": " << aside << " " << beyond << " " << turn << " " << deep;
+  }
 }
 
 TEST(VesselContact, NothingIsThereBetweenTwoPieces) {
