@@ -31,7 +31,7 @@ def of_scene(field, default=None):
 
 
 STITCHES = int(of_scene('sutures', '"1"').strip('"'))
-LOOP = 3.6 if STITCHES == 6 else 3.2                      # [mm], most of a knot's loop
+LOOP = 3.6                                                # [mm], most of a knot's loop
 SLIDES = {8: (.7, .6, .8), 6: (.6, .55, .65)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
 
 # Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave:
@@ -235,7 +235,7 @@ def bite_choices(random_, k):
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name in BITES}
     usual = ((0, -.36), (.12, .06), .2), ((0, -.36), (.1, -.05), .2), ((0, -.36), (.2, .04), .2), ((.03, -.42), (.12, .06), .2), ((0, -.36), (.3, .1), .2), ((0, -.3), (.12, .06), .2)
     between = ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
-    rolled = ((-.1, -.36), (.2, .04), .2), ((-.06, -.36), (.2, .04), .2)  # an edge that went under between tight neighbours is met farther from it
+    rolled = ((-.06, -.36), (.32, .04), .2), ((-.1, -.36), (.2, .04), .2), ((-.06, -.36), (.4, .04), .2), ((-.06, -.36), (.2, .04), .2)  # an edge that went under between tight neighbours is met farther from it
     for enter, leave, press in rolled + between + usual if k > 5 else between + usual if k > 3 else usual:
         for aside in (.1, 0, .15) if k < 3 else (.05, .07, .1) if k > 5 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
