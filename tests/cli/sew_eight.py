@@ -20,7 +20,7 @@ HINTS = json.load(open(os.environ['HINTS']))['stitches'] if 'HINTS' in os.enviro
 BITES = ('aside', 'enter', 'leave', 'press', 'take')      # what is chosen before the knot
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
 FIRM = 0.55                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
-WIDE, INNER = 0.58, 0.1                                   # [mm], most of an outer bite, least of an inner one
+WIDE, INNER = 0.66, 0.1                                   # [mm], most of an outer bite, least of an inner one
 OPENED = 'an earlier knot opened'
 PLACE = 21.0                                              # [degrees], most by which a stitch is beside its place
 
@@ -235,9 +235,9 @@ def bite_choices(random_, k):
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name in BITES}
     usual = ((0, -.36), (.12, .06), .2), ((0, -.36), (.1, -.05), .2), ((0, -.36), (.2, .04), .2), ((.03, -.42), (.12, .06), .2), ((0, -.36), (.3, .1), .2), ((0, -.3), (.12, .06), .2)
     between = ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
-    rolled = ((-.06, -.36), (.32, .04), .2), ((-.1, -.36), (.2, .04), .2), ((-.06, -.36), (.4, .04), .2), ((-.06, -.36), (.2, .04), .2)  # an edge that went under between tight neighbours is met farther from it
+    rolled = ((-.06, -.36), (.2, .04), .35), ((-.06, -.36), (.2, .04), .05), ((-.06, -.36), (.46, .02), .2), ((-.06, -.36), (.42, .1), .2), ((-.06, -.36), (.3, -.1), .2), ((-.06, -.36), (.3, .2), .2)
     for enter, leave, press in rolled + between + usual if k > 5 else between + usual if k > 3 else usual:
-        for aside in (.1, 0, .15) if k < 3 else (.05, .07, .1) if k > 5 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
+        for aside in (.1, 0, .15) if k < 3 else (.05, -.05) if k > 5 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
         yield dict(aside=random_.choice((0, .05, -.05, .1, -.1, .2, -.2)), enter=(near(-.05, .09), near(-.45, -.2)), leave=(near(.06, .3) if k < 4 else near(.1, .5), near(-.1, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
