@@ -28,7 +28,7 @@ HelloView hello_of(const TrainerOptions& options) {
       const bool shown = std::filesystem::exists(demonstration_file(options.root, task.name));
       any_shown = any_shown || shown;
       if (task.demonstration_only && !shown) continue;  // there is nothing to do in it
-      hello.tasks.push_back({task.name, task.title, task.description, chapter.title, task.demonstration_only, task.retraction != nullptr, shown});
+      hello.tasks.push_back({task.name, task.title, task.description, chapter.title, task.demonstration_only, task.retraction != nullptr, shown, task.needle && !task.needle->scales.empty()});
     }
   }
   for (const std::string& problem : problems) std::fprintf(stderr, "filum: left out: %s\n", problem.c_str());

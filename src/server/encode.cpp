@@ -28,7 +28,8 @@ json task_info_json(const TaskInfoView& task) {
           {"demonstration", task.demonstration},
           {"picture", task.name},
           {"dial", task.dial},
-          {"shown", task.shown}};
+          {"shown", task.shown},
+          {"rated", task.rated}};
 }
 
 json device_json(const DeviceView& d) {

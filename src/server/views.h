@@ -15,6 +15,7 @@ struct TaskInfoView {
   bool demonstration = false;  // shown by the demonstrator only
   bool dial = false;           // the stiffness of its tissue can be turned
   bool shown = true;           // there is a demonstration of it
+  bool rated = false;          // raters have a form for it
 };
 
 struct DeviceView {

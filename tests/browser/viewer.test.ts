@@ -82,6 +82,23 @@ it("is rated by keyboard, scale by scale", async () => {
   expect(trouble).toEqual([]);
 });
 
+it("leads raters past points, verdict, code and what the simulator found", async () => {
+  const { page, trouble } = opened;
+  await page.goto(`${mock.address}#/sessions`);
+  await page.click("a[href='#/rating']");
+  await page.waitForSelector(".sessions tr[data-session]");
+  expect(await page.locator("tr[data-session]").evaluateAll((all) => all.map((one) => (one as HTMLElement).dataset.session)), "what is not scored has no form").toEqual(["s1"]);
+  const list = (await page.textContent("main"))!;
+  for (const told of ["89", "passed", "A17"]) expect(list, told).not.toContain(told);
+  await page.click("a[href='#/watch/s1']");
+  await page.waitForSelector(".replay a[href='#/rate/s1']");
+  await until(() => page.textContent(".transport .time"), (text) => (text ?? "").includes("/ 10:00"), "the recording is there");
+  expect(await page.locator(".events, .timeline span, a[href^='#/result']").count()).toBe(0);
+  await page.goto(`${mock.address}#/replay/s1`);
+  await page.waitForSelector(".events li"); // the same recording, as trainers see it
+  expect(trouble).toEqual([]);
+});
+
 it("zooms and focuses by keyboard within its range", async () => {
   const { page } = opened;
   await start("demo");

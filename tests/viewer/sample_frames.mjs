@@ -1,9 +1,9 @@
 // Made-up messages of the trainer for tests of the viewer alone: a thread round the post, two instruments that move.
 
 export const kTasks = [
-  { name: "knot-square", title: "Square knot", summary: "Tie a square knot round the post by instrument tie and cut both tails.", chapter: "Knots", demonstration: false, shown: true, dial: false, picture: "knot-square" },
-  { name: "knot-surgeons", title: "Surgeon's knot", summary: "A double throw, then a single throw the other way.", chapter: "Knots", demonstration: false, shown: true, dial: false, picture: "knot-surgeons" },
-  { name: "knot-granny", title: "Granny knot", summary: "How a granny knot comes about, and why it slips.", chapter: "Knots", demonstration: true, shown: true, dial: false, picture: "knot-granny" },
+  { name: "knot-square", title: "Square knot", summary: "Tie a square knot round the post by instrument tie and cut both tails.", chapter: "Knots", demonstration: false, shown: true, rated: true, dial: false, picture: "knot-square" },
+  { name: "knot-surgeons", title: "Surgeon's knot", summary: "A double throw, then a single throw the other way.", chapter: "Knots", demonstration: false, shown: true, rated: false, dial: false, picture: "knot-surgeons" },
+  { name: "knot-granny", title: "Granny knot", summary: "How a granny knot comes about, and why it slips.", chapter: "Knots", demonstration: true, shown: true, rated: false, dial: false, picture: "knot-granny" },
 ];
 const kSteps = ["grasp the long end", "form the loop", "pass the short end", "lay the throw", "tighten", "second loop", "pass again", "tighten the knot", "cut the tails"];
 

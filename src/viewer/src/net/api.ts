@@ -1,5 +1,5 @@
 // The questions asked over HTTP. Answers are typed by the message schema.
-import type { Scale, SessionDetail, SessionList } from "../messages";
+import type { Scale, SessionDetail, SessionList, TaskInfo } from "../messages";
 
 async function get<T>(path: string): Promise<T> {
   const answer = await fetch(path, { headers: { accept: "application/json" } });
@@ -66,6 +66,7 @@ export const study = {
   cancel: (): Promise<StudyStatus> => post("/api/study/cancel", {}),
 };
 
+export const tasks = (): Promise<{ tasks: TaskInfo[] }> => get("/api/tasks");
 export const sessions = (): Promise<SessionList> => get("/api/sessions");
 export const session = (id: string): Promise<SessionDetail> => get(`/api/sessions/${encodeURIComponent(id)}`);
 

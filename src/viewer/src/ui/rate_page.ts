@@ -26,7 +26,7 @@ export class RatePage implements Page {
 
   private show(status: RatingStatus): void {
     const { scales } = status, session = encodeURIComponent(this.id);
-    const links = h("div", { class: "buttons" }, h("a", { class: "button", href: `#/replay/${session}` }, "Replay"), h("a", { class: "button", href: `#/result/${session}` }, "Result"), h("a", { class: "button", href: "#/agreement" }, "Agreement"));
+    const links = h("div", { class: "buttons" }, h("a", { class: "button", href: `#/watch/${session}` }, "Watch"), h("a", { class: "button", href: "#/rating" }, "All to rate"), h("a", { class: "button", href: "#/agreement" }, "Agreement"));
     if (scales.length === 0) {
       this.element.replaceChildren(h("h1", {}, `Rate: ${status.title}`), h("p", {}, "This task has no rating scale."), links);
       return;

@@ -48,7 +48,8 @@ export class ReplayPage implements Page {
   private wanted: number | null; // [s], where the address of the page asks to go
   private opened = false;
 
-  constructor(private readonly app: App, argument: string) {
+  /// `blind`: what a rater is shown, the field alone without what the simulator found.
+  constructor(private readonly app: App, argument: string, private readonly blind = false) {
     const [id, time, stitch] = argument.split("/");
     this.id = id;
     this.wantedStitch = stitch?.startsWith("stitch-") ? Number(stitch.slice(7)) - 1 : -1;
@@ -72,7 +73,12 @@ export class ReplayPage implements Page {
       case "hello": this.opened = false; this.open(); break;
       case "scene": this.describe(); break;
       case "replay_state": this.showState(); break;
-      case "result": this.events = message.events; this.result = message; this.describe(); break;
+      case "result":
+        if (this.blind) break;
+        this.events = message.events;
+        this.result = message;
+        this.describe();
+        break;
       case "frame": this.showFrame(); break;
       case "error": if (!this.forces) this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", {}, message.what), h("a", { class: "button", href: "#/sessions" }, "All sessions"))); break;
       default: break;
@@ -147,6 +153,11 @@ export class ReplayPage implements Page {
     clear(this.left);
     clear(this.right);
     this.steps = new StepPanel(scene.title);
+    if (this.blind) {
+      this.left.append(this.steps.element);
+      this.right.append(h("p", { class: "quiet" }, "For raters: without what the simulator found."), h("a", { class: "button primary", href: `#/rate/${encodeURIComponent(this.id)}` }, "Rate"), h("a", { class: "button", href: "#/rating" }, "All to rate"));
+      return;
+    }
     this.forces = new ForcePanel(scene);
     const list = this.events.map((event) => h("li", {}, h("button", { class: "eventbutton", onclick: () => this.seek(event.time) },
       h("span", { class: "when" }, `${event.time.toFixed(1)} s`), h("span", {}, eventWords(event)), h("span", { class: "quiet" }, event.unit === "-" ? "" : quantity(event.value, event.unit)))));
@@ -228,8 +239,9 @@ export class ReplayPage implements Page {
       return;
     }
     this.lastPanels = now;
-    this.warnings.show(frame.task?.warnings ?? []);
     this.steps?.show(frame.task, frame.time);
+    if (this.blind) return;
+    this.warnings.show(frame.task?.warnings ?? []);
     if (this.app.scene) this.brain?.show(frame, this.app.scene);
     this.tissue?.show(frame);
     this.forces?.show(frame, null);

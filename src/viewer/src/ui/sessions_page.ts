@@ -19,7 +19,7 @@ export class SessionsPage implements Page {
   private async load(): Promise<void> {
     try {
       const { sessions: list } = await sessions();
-      this.element.replaceChildren(h("h1", {}, "Sessions"), h("p", {}, h("a", { href: "#/agreement" }, "Agreement of raters")), list.length > 0 ? sessionTable(list) : h("p", {}, "Nothing has been recorded yet."));
+      this.element.replaceChildren(h("h1", {}, "Sessions"), h("p", { class: "buttons" }, h("a", { class: "button", href: "#/rating" }, "For raters"), h("a", { class: "button", href: "#/agreement" }, "Agreement of raters")), list.length > 0 ? sessionTable(list) : h("p", {}, "Nothing has been recorded yet."));
     } catch (error) {
       this.element.replaceChildren(h("h1", {}, "Sessions"), h("p", { role: "alert" }, `The list cannot be read: ${(error as Error).message}.`),
         h("button", { onclick: () => void this.load() }, "Try again"));

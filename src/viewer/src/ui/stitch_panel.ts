@@ -13,7 +13,9 @@ export function both(values: readonly (number | null)[], digits: number): string
 }
 
 function cell(value: number | null | undefined, factor: number, digits: number): string {
-  return value === null || value === undefined ? "–" : (factor * value).toFixed(digits);
+  if (value === null || value === undefined) return "–";
+  const text = (factor * value).toFixed(digits);
+  return Number(text) === 0 ? text.replace("-", "") : text; // no "-0.0"
 }
 
 /// "1.2 / 0.9": the cut ends of a knot; a dash where there is none.
