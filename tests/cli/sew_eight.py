@@ -235,7 +235,7 @@ def bite_choices(random_, k):
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name in BITES}
     usual = ((0, -.36), (.12, .06), .2), ((0, -.36), (.1, -.05), .2), ((0, -.36), (.2, .04), .2), ((.03, -.42), (.12, .06), .2), ((0, -.36), (.3, .1), .2), ((0, -.3), (.12, .06), .2)
     between = ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
-    rolled = ((-.06, -.36), (.2, .04), .35), ((-.06, -.36), (.2, .04), .05), ((-.06, -.36), (.46, .02), .2), ((-.06, -.36), (.42, .1), .2), ((-.06, -.36), (.3, -.1), .2), ((-.06, -.36), (.3, .2), .2)
+    rolled = ((-.06, -.36), (.2, .04), .35), ((-.06, -.36), (.2, .04), .05), ((-.06, -.36), (.46, .02), .2), ((-.06, -.36), (.42, .1), .2), ((-.06, -.36), (.3, -.1), .2), ((-.06, -.36), (.3, .2), .2)  # an edge that went under between tight neighbours
     for enter, leave, press in rolled + between + usual if k > 5 else between + usual if k > 3 else usual:
         for aside in (.1, 0, .15) if k < 3 else (.05, -.05) if k > 5 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
@@ -246,7 +246,7 @@ def bite_choices(random_, k):
 def knot_choices(random_, k):
     """Before the ends of the last stitch are cut, the clamp comes as near as before each."""
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name not in BITES}
-    lasts = (.18, .3) if k + 1 == STITCHES else (.18,)
+    lasts = (.18, .3, .45) if k + 1 == STITCHES else (.18,)
     yield from (dict(slide=slide, let_go=(0, -.3, -.45), first=first, firm=firm, cut=1.5, last=last) for last in lasts for slide in SLIDES
                 for first, firm in ((10, 30), (9, 30)))
     while True:
