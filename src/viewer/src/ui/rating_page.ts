@@ -27,7 +27,7 @@ export class RatingPage implements Page {
 
   private show(list: SessionInfo[]): void {
     this.element.replaceChildren(h("h1", {}, "For raters"),
-      h("p", { class: "quiet" }, "Watch a session, then rate it. Nothing here shows who did it or what the simulator found; that appears once your marks are stored."),
+      h("p", { class: "quiet" }, "Watch a session, then rate it. Nothing here shows who did it or what the simulator found; its estimates appear once your marks are stored."),
       list.length > 0 ? h("div", { class: "panel" }, h("table", {},
         h("thead", {}, h("tr", {}, ...["Started", "Task", "Time", ""].map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...list.map(row)))) : h("p", {}, "Nothing has been recorded yet that raters have a form for."),
       h("p", { class: "buttons" }, h("a", { class: "button", href: "#/agreement" }, "Agreement of raters")));
