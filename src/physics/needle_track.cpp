@@ -13,11 +13,18 @@ constexpr double kPointGrip = 1.0;  // [-], friction of the point where it rests
 constexpr double kBack = 0.1e-6;      // [m], by which the point must leave the next layer to be off it: less is the wall's own trembling
 constexpr double kBeside = 0.1e-3;    // [m], a free point's reach: no wall moves as far in a step
 constexpr double kLift = 1e-6;        // [m], by which a point that is let go stands off the surface at least
+constexpr double kStraightFrom = 2.0;  // of `stiffens`
 constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind a knot to have left it
 
 double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
 
 }  // namespace
+
+KnotHold knot_hold(const TrackMaterial& m, double give) noexcept {
+  if (m.stiffens == 0.0) return {m.hold * give, m.hold};
+  const double d = std::min(give, kStraightFrom * m.stiffens), q = d * d / (m.stiffens * m.stiffens), slope = m.hold * (1.0 + 3.0 * q);
+  return {m.hold * (1.0 + q) * d + slope * (give - d), slope};
+}
 
 void load_wall(VesselWall& wall, const WallState& w, const WallPoint& at, const RodTether& t, double dt) noexcept {
   WallSlip slip;
@@ -56,7 +63,20 @@ RodTether NeedleTracks::tether_of(const VesselWall& wall, const WallState& w, co
   t.limit = share * l.friction * k.span + material_.bend_friction * k.lateral;
   t.drag = share * l.drag * k.span;
   t.start = (x - t.anchor).dot(along);
+  if (material_.stiffens > 0.0) draw_aside(t, x);
   return t;
+}
+
+/// The tangent of the hold about where the strand is.
+void NeedleTracks::draw_aside(RodTether& t, const Vec3& x) const noexcept {
+  const Vec3 aside = x - t.anchor - t.start * t.along;
+  const double give = aside.norm();
+  if (give == 0.0) return;
+  const KnotHold h = knot_hold(material_, give);
+  const Vec3 way = aside / give;
+  const double beside = h.force / give;  // [N/m], across the way that it gives
+  t.stiffness = beside * (Mat3::Identity() - t.along * t.along.transpose()) + (h.slope - beside) * way * way.transpose();
+  t.anchor += (give - h.force / h.slope) * way;
 }
 
 void NeedleTracks::hold(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, const RodState* thread,
@@ -156,7 +176,7 @@ void NeedleTracks::tear(const VesselWall& wall, const WallState& w, TrackState& 
   const double bears = material_.tear * bite;
   if (pull <= bears) return;
   if (track.torn == 0.0) e.say("tear", pull);
-  const double step = std::min(0.5 * needle_.wire_radius, (pull - bears) / (material_.hold * track.n));
+  const double step = std::min(0.5 * needle_.wire_radius, (pull - bears) / (knot_hold(material_, kStraightFrom * material_.stiffens).slope * track.n));
   track.torn += step;
   s.dissipated += pull * step;
   bool out = false;

@@ -4,6 +4,8 @@
 // A track is a curve through material points of the wall (knots), laid down by the needle's point. It does not depend on the wall's
 // nodes. Each knot holds whatever runs through it, needle or thread: a spring across the strand, dry and speed-dependent friction
 // along it (rod_tether.h), and gives the tissue the opposite load.
+//   Hold      Tissue stiffens as the strand is drawn aside by d in it: F = k d (1 + d^2/d_s^2), straight on from d = 2 d_s. A step takes it as linear about where
+//             it begins (Newton's first iteration). By it a small bite tears before the strand has come to the edge; a rubber has no d_s.
 //   Puncture  Layer by layer. The point rests on a layer until the normal part of its force reaches the layer's threshold, so that
 //             along the needle the force is F0 / sin(angle to the surface); below the least angle the point slides.
 //   Insertion  F = F_cut + sum over the length inside (f + c v): linear in depth (Okamura, Simone & O'Leary, IEEE TBME 51:1707, 2004).
@@ -34,7 +36,8 @@ struct PunctureLayer {
 
 struct TrackMaterial {
   std::vector<PunctureLayer> layers;  // inner first, as VesselWall::layer_at counts
-  double hold = 400.0;           // [N/m], of a knot across the strand
+  double hold = 400.0;           // [N/m], k of a knot across the strand
+  double stiffens = 0.0;         // [m], d_s; 0: it does not
   double point_stiffness = 1500.0;  // [N/m], tissue just under the point
   double least_angle = 0.26;     // [rad], below which the point slides off
   double thread_share = 0.4;     // friction and drag of thread over those of needle
@@ -44,6 +47,12 @@ struct TrackMaterial {
   double wear = 2e-2;            // [1/N], growth of the hole's radius for each force and length drawn
   double spacing = 60e-6;        // [m], of knots
 };
+
+/// What a knot holds a strand by that is drawn aside by `give` [m]: force [N] and its slope [N/m].
+struct KnotHold {
+  double force, slope;
+};
+KnotHold knot_hold(const TrackMaterial& m, double give) noexcept;
 
 struct TrackEvent {
   const char* name = "";       // "puncture" (value: normal force), "needle-out", "pulled-back", "tear" (value: force), "torn-out"
@@ -91,6 +100,7 @@ class NeedleTracks {
     return own > 0.0 ? own : material_.point_stiffness;
   }
   RodTether tether_of(const VesselWall& wall, const WallState& w, const TrackKnot& k, double arc, const Vec3& along, const Vec3& x, double share) const noexcept;
+  void draw_aside(RodTether& t, const Vec3& x) const noexcept;
   void hold_point(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, std::vector<RodTether>& on_needle) noexcept;
   void take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt) noexcept;
   void tear(const VesselWall& wall, const WallState& w, TrackState& s, NeedleTrack& track, const Vec3& load, Events& e) noexcept;

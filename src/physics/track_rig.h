@@ -33,6 +33,7 @@ class TrackRig {
   RigSample step(double move, double sideways = 0.0);
   const TrackState& tracks() const { return state_; }
   const NeedleState& needle() const { return needle_; }
+  const NeedleShape& shape() const { return shape_; }
   const TrackMaterial& material() const { return tracks_->material(); }
   double work() const { return work_; }        // [J], by the vice
   double stored() const;                       // [J], in the holds of needle and tissue

@@ -185,6 +185,7 @@ TrackMaterial load_track(const std::string& path) {
   }
   if (m.layers.empty()) file.refuse("layers", "at least one layer");
   m.hold = measured(file, "hold", "N/m", kTrackStiffness);
+  if (file.has("stiffens")) m.stiffens = measured(file, "stiffens", "um", {1e-6, 1e-2});
   m.point_stiffness = measured(file, "point_stiffness", "N/m", kTrackStiffness);
   m.least_angle = measured(file, "least_angle", "deg", Range::between(0.0, 0.5 * std::numbers::pi));
   m.thread_share = measured(file, "thread_share", "-", Range::between(0.0, 10.0));

@@ -100,6 +100,38 @@ TEST(NeedleTrack, SmallBiteTearsAtItsLoadAndLetsGo) {
   EXPECT_NEAR(most, 15e-3, 2e-3);
 }
 
+/// Drawn aside by d in a block that does not give, each knot holds by k d (1 + d^2/d_s^2), and straight on from 2 d_s.
+TEST(NeedleTrack, HoldStiffensByItsLaw) {
+  RigOptions o;
+  o.thickness = 0.3e-3;
+  o.young = 1e9;
+  o.track = plain_track(5e-3, 1e-3, 0.0);
+  o.track.hold = 50.0;
+  o.track.stiffens = 20e-6;
+  o.track.tear = 1e6;
+  TrackRig rig(o);
+  ASSERT_TRUE(drive_until(rig, "needle-out"));
+  const NeedleTrack& t = rig.tracks().tracks[0];
+  const auto place = [&](int k) -> Vec3 { return rig.needle().X_WN * rig.shape().point(t.knots[static_cast<std::size_t>(k)].strand); };
+  std::vector<Vec3> before;
+  for (int k = 0; k < t.n; ++k) before.push_back(place(k));
+  const double hold = 50.0, d_s = 20e-6;
+  double farthest = 0.0;
+  const int all = t.n;  // until it tilts out of one
+  for (int step = 1; step <= 400 && t.n == all; ++step) {
+    rig.step(0.0, 1e-6);
+    if (step % 20 != 0) continue;
+    double law = 0.0;
+    for (int k = 0; k < t.n; ++k) {
+      const double d = (place(k) - before[static_cast<std::size_t>(k)]).norm();
+      farthest = std::max(farthest, d);
+      law += d < 2.0 * d_s ? hold * d * (1.0 + d * d / (d_s * d_s)) : hold * (10.0 * d_s + 13.0 * (d - 2.0 * d_s));
+    }
+    EXPECT_NEAR(t.pull, law, 0.02 * law) << step;
+  }
+  EXPECT_GT(farthest, 2.5 * d_s) << "straight on, too";
+}
+
 TEST(NeedleTrack, SawingWidensTheHole) {
   RigOptions o;
   o.thickness = 0.3e-3;

@@ -10,6 +10,7 @@
 #include "world/model.h"
 #include "world/needle_model.h"
 #include "world/state.h"
+#include "world/vessel_file.h"
 #include "world/vessel_model.h"
 #include "world/world.h"
 
@@ -24,6 +25,22 @@ std::shared_ptr<const Model> scene() {
 std::shared_ptr<const Model> stumps() {
   static const auto model = load_model(FILUM_SOURCE_DIR, "vessel-stitch");
   return model;
+}
+
+/// Of every shipped tissue: what tears a bite of one to three walls draws the strand aside by less than that bite, so that a stitch tied too tight tears it and does not slip off its edge.
+TEST(VesselScene, ABiteTearsBeforeTheStrandIsAtItsEdge) {
+  struct Tissue {
+    const char* name;
+    double wall;  // [m]
+  };
+  for (const Tissue& t : {Tissue{"artery", 0.14e-3}, {"vein", 0.033e-3}, {"silicone", 0.15e-3}, {"latex", 0.2e-3}}) {
+    const TrackMaterial m = load_track(std::string(FILUM_SOURCE_DIR) + "/models/track/" + t.name + ".yaml");
+    constexpr int kKnots = 3;  // the fewest of a way through a wall
+    for (const double walls : {1.0, 2.0, 3.0}) {
+      const double bite = walls * t.wall;
+      EXPECT_GT(kKnots * knot_hold(m, bite).force, m.tear * bite) << t.name << ", " << walls;
+    }
+  }
 }
 
 TEST(VesselScene, CardLiesStillByItself) {
