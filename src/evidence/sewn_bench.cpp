@@ -50,9 +50,9 @@ Vec3 place(const VesselMesh& mesh, const Points& x, const WallPoint& at) {
   return p;
 }
 
-/// The element of a part in the second row from the cut edge that lies in this direction from the axis.
-int element_at(const VesselModel& v, const Points& x, int part, const Vec3& direction) {
-  const int half = v.mesh.n_elements() / 2, first = part * half + (v.shape.along - 2) * v.shape.around;
+/// The element of a part in this row from the cut edge that lies in this direction from the axis.
+int element_at(const VesselModel& v, const Points& x, int part, int row, const Vec3& direction) {
+  const int half = v.mesh.n_elements() / 2, first = part * half + (v.shape.along - row) * v.shape.around;
   int best = first;
   double most = -2.0;
   for (int e = first; e < first + v.shape.around; ++e) {
@@ -67,9 +67,9 @@ int element_at(const VesselModel& v, const Points& x, int part, const Vec3& dire
 }
 
 /// Through one edge: from outside (part 0) or from the lumen (part 1).
-void sew(const VesselModel& v, const Points& x, int part, const Vec3& direction, Path& path, std::vector<Pass>& passes) {
+void sew(const VesselModel& v, const Points& x, int part, int row, const Vec3& direction, Path& path, std::vector<Pass>& passes) {
   Pass pass{part, {}, {}};
-  const int element = element_at(v, x, part, direction);
+  const int element = element_at(v, x, part, row, direction);
   for (std::size_t k = 0; k < 3; ++k) {
     const double zeta = kDeep * (part == 0 ? 1.0 - static_cast<double>(k) : static_cast<double>(k) - 1.0);
     pass.at[k] = {element, Vec3(0.0, 0.0, zeta)};
@@ -95,7 +95,7 @@ NeedleTrack track_of(const Pass& pass, double whole, double wire) {
 
 }  // namespace
 
-std::pair<std::shared_ptr<const Model>, State> sewn_stumps(const std::shared_ptr<const Model>& of, int stitches) {
+std::pair<std::shared_ptr<const Model>, State> sewn_stumps(const std::shared_ptr<const Model>& of, int stitches, int row) {
   const VesselModel& v = *of->vessel;
   const Points rest = World(of).state().tissue.wall.x;
   const Vec3 axis = v.clamp.X_WB.q * Vec3::UnitZ(), middle = v.clamp.X_WB.p, up = v.cut_along;
@@ -104,9 +104,9 @@ std::pair<std::shared_ptr<const Model>, State> sewn_stumps(const std::shared_ptr
   std::vector<Pass> passes;
   for (int k = 0; k < stitches; ++k) {
     const double turn = static_cast<double>(k) / stitches;
-    if (k == 0) path.start(place(v.mesh, rest, {element_at(v, rest, 0, direction(0.0)), Vec3(0, 0, kDeep)}) + kTail * up);
-    sew(v, rest, 0, direction(turn), path, passes);
-    sew(v, rest, 1, direction(turn), path, passes);
+    if (k == 0) path.start(place(v.mesh, rest, {element_at(v, rest, 0, row, direction(0.0)), Vec3(0, 0, kDeep)}) + kTail * up);
+    sew(v, rest, 0, row, direction(turn), path, passes);
+    sew(v, rest, 1, row, direction(turn), path, passes);
     const double next = turn + 0.5 / stitches;
     path.to(middle + 1.3 * v.radius * direction(k + 1 < stitches ? next : turn), kSewnEdge);
     // more than half a quarter of the way round is led round, not through the lumen

@@ -12,8 +12,8 @@
 
 namespace filum {
 
-/// Model with a longer thread, and its state with the thread in the wall.
-std::pair<std::shared_ptr<const Model>, State> sewn_stumps(const std::shared_ptr<const Model>& of, int stitches);
+/// Model with a longer thread, and its state with the thread in the wall; bites go through this row of elements from the cut edge.
+std::pair<std::shared_ptr<const Model>, State> sewn_stumps(const std::shared_ptr<const Model>& of, int stitches, int row = 2);
 
 inline constexpr int kSewn[] = {1, 2, 4, 8};
 void run_sewn_bench(int stitches, BenchResult& r, const StepTimer& timer, const TaskOpener& open_task);

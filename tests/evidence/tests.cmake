@@ -1,5 +1,5 @@
 filum_test(evidence/bench filum_evidence)
-foreach(name linked_strands linking localized_helix plectoneme stability undisturbed validation wall_watch wild_hands)
+foreach(name linked_strands linking localized_helix plectoneme sewn_bench stability undisturbed validation wall_watch wild_hands)
   filum_test(evidence/${name} filum_evidence)
 endforeach()
 if(TARGET filum)
