@@ -14,6 +14,7 @@ constexpr double kSwage = 2e4;         // [N/m], of the joint between needle and
 constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
 constexpr double kApart = 20e-6;        // [m], between thread and needle: at kSwage 0.4 N, as much as a thread of 10-0 bears
 constexpr double kClosing = 1e-3;       // [rad/s], of jaws that close
+constexpr int kMostCatches = 4;         // times that a step is made again because it took thread through tissue
 constexpr int kMostRepeats = 4;         // of a step that ends with them apart
 
 }  // namespace
@@ -162,13 +163,18 @@ bool NeedleScene::misled(const State& s, const ImplicitRod& rod) const noexcept 
   return apart(s) > kApart && differ.norm() > 0.5 * s.needle.pull.norm();
 }
 
-/// The pull of the last step, under which the swage is seen ahead, is not the thread's where jaws have just snapped shut on the wire: then the step is made
-/// again under the pull that the thread turned out to have.
+/// A step that takes thread through tissue is made again, held back where it went in. The pull of the last step, under which the swage is seen ahead, is not the thread's where
+/// jaws have just snapped shut on the wire: then the step is made again under the pull that the thread turned out to have.
 RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept {
   keep(s);
   before_thread(s, rod);
   RodStepSummary thread = rod.step(s.thread, s.memory, o);
   follow(s);
+  for (int k = 0; k < kMostCatches && tissue_ && tissue_->catches(s.tissue, s.thread, rod.tethers.list); ++k) {
+    take_back(s);
+    thread = rod.step(s.thread, s.memory, o);
+    follow(s);
+  }
   for (int k = 0; k < kMostRepeats && thread.residual < kTroubleForce && misled(s, rod); ++k) {
     take_back(s);
     hold_swage(s, rod, -rod.tethers.list.front().force);
@@ -181,7 +187,7 @@ RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodSte
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {
   const StageScope stage("needle and tissue");
   thread_pull_ = rod.tethers.list.front().force.norm();
-  if (!summary_.sound || summary_.residual > kTroubleForce) say(o, "solver-trouble", -1, summary_.residual, "N");
+  if (!summary_.sound || summary_.residual > kTroubleForce || apart(s) > kApart) say(o, "solver-trouble", -1, summary_.residual, "N");
   if (tissue_) tissue_->press(s.tissue, model_.instruments, s.instruments, o);
   if (tissue_) tissue_->step(s.tissue, s.needle.X_WN, s.needle.in_hand(), s.thread, body_.tethers, rod.tethers.list, o);
   if (tissue_) tissue_->feel(s.tissue, model_.instruments, s.instruments, s.force, s.torque);

@@ -16,9 +16,8 @@ RodTether hold_touch(const VesselWall& wall, const WallState& w, const SurfaceTo
   RodTether t;
   t.arc = touch.arc;
   t.anchor = wall.on_triangle(w, touch.at) + law.radius * touch.normal;
-  t.stiffness = law.stiffness * touch.normal * touch.normal.transpose();
-  const double depth = (t.anchor - x).dot(touch.normal);
-  if (depth > kDeepest) t.anchor -= (depth - kDeepest) * touch.normal;
+  const double depth = (t.anchor - x).dot(touch.normal), share = depth > kDeepest ? kDeepest / depth : 1.0;
+  t.stiffness = share * law.stiffness * touch.normal * touch.normal.transpose();
   t.along = touch.normal.unitOrthogonal();
   t.across = touch.normal.cross(t.along);
   t.stick = law.stiffness;

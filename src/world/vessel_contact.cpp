@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kSpacing = 0.1e-3;     // [m], of samples along the thread at most: less than a wall is thick
 constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands for, either way
+constexpr double kThrough = 50e-6;      // [m], half a wall: as much thread goes in a step at 25 mm/s
 constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
@@ -68,6 +69,18 @@ void VesselContact::hold(const VesselWall& wall, const WallState& w, const Touch
   }
 }
 
+bool VesselContact::catches(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
+                            std::vector<RodTether>& on_thread) const noexcept {
+  const int known = s.n;
+  sweep(wall, w, s, tracks, thread, {0.0, kThrough});
+  for (int k = known; k < s.n && on_thread.size() < on_thread.capacity(); ++k) {
+    const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
+    const auto [edge, f] = locate_arc(thread, touch.arc);
+    on_thread.push_back(hold_touch(wall, w, touch, law, (1.0 - f) * before_.col(edge) + f * before_.col(edge + 1)));
+  }
+  return s.n > known;
+}
+
 void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
                            const std::vector<RodTether>& on_thread) noexcept {
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
@@ -91,7 +104,7 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
     s.touches[static_cast<std::size_t>(kept++)] = touch;
   }
   s.n = kept;
-  sweep(wall, w, s, tracks, thread, 0.0);
+  sweep(wall, w, s, tracks, thread, {});
   n_come_out_ = 0;
 }
 
@@ -99,30 +112,30 @@ void VesselContact::overtake(const VesselWall& wall, const WallState& w, TouchSt
   const double farthest = wall.options().dt * w.v.colwise().norm().maxCoeff();
   if (farthest == 0.0) return;
   before_.leftCols(thread.n) = thread.x.leftCols(thread.n);
-  sweep(wall, w, s, tracks, thread, farthest);
+  sweep(wall, w, s, tracks, thread, {farthest, 0.0});
 }
 
-/// Samples of the thread on their way from before_ to where it is, or, with `reach` [m], of a wall that has just moved by that much at most.
-void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, double reach) const noexcept {
+/// Samples of the thread on their way from before_ to where it is, or past a wall that has just moved.
+void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, const Search& search) const noexcept {
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   const InTracks in_tracks(tracks, whole);
   double arc = thread.arc_start;
   for (int i = 0; i + 1 < thread.n && s.n < kMostTouches; arc += thread.rest_length[i++]) {
     const int n = thread.alive[i] == 0 ? 1 : static_cast<int>(std::ceil(thread.rest_length[i] / kSpacing));
     if (in_tracks.hold_all(arc, thread.rest_length[i], n)) continue;
-    const Vec3 a = before_.col(i), b = before_.col(i + 1), to_a = thread.x.col(i), to_b = thread.x.col(i + 1), beside = Vec3::Constant(reach);
+    const Vec3 a = before_.col(i), b = before_.col(i + 1), to_a = thread.x.col(i), to_b = thread.x.col(i + 1), beside = Vec3::Constant(search.reach);
     if (!wall.near(a.cwiseMin(b).cwiseMin(to_a).cwiseMin(to_b) - beside, a.cwiseMax(b).cwiseMax(to_a).cwiseMax(to_b) + beside)) continue;
     for (int k = 0; k < n && s.n < kMostTouches; ++k) {
       const double f = static_cast<double>(k) / n, at = InTracks::sample(arc, thread.rest_length[i], k, n);
       if (in_tracks.hold(at) || spoken_for(s, at)) continue;  // before the wall is searched: it costs most
       const Vec3 now = (1.0 - f) * to_a + f * to_b;
       Vec3 before = (1.0 - f) * a + f * b;
-      if (reach > 0.0) {
-        const WallCrossing near = wall.nearest(w, now, reach);
+      if (search.reach > 0.0) {
+        const WallCrossing near = wall.nearest(w, now, search.reach);
         if (!near.found) continue;
         before = now + wall.options().dt * wall.velocity(w, near.point);
       }
-      look(wall, w, s, at, before, now);
+      look(wall, w, s, at, before, now, search.least);
     }
   }
 }
@@ -133,9 +146,9 @@ bool VesselContact::spoken_for(const TouchState& s, double arc) const noexcept {
          near_one_of(std::span(come_out_.data(), static_cast<std::size_t>(n_come_out_)), arc);
 }
 
-void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now) const noexcept {
+void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now, double least) const noexcept {
   const WallCrossing c = meet_surface(wall, w, before, now);
-  if (!c.found) return;
+  if (!c.found || (1.0 - c.fraction) * (before - now).dot(c.normal) < least) return;
   SurfaceTouch touch;
   touch.arc = arc;
   touch.at = c.point;

@@ -26,6 +26,8 @@ class VesselContact {
   double jaw_friction = 0.15;  // [-], steel on wet tissue
 
   void hold(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread, std::vector<RodTether>& on_thread) noexcept;
+  /// Of a step that the thread has just made and that can be made again: a sample that went far past the surface gets a touch, to hold it back then. True if one did.
+  bool catches(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, std::vector<RodTether>& on_thread) const noexcept;
   void follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
               const std::vector<RodTether>& on_thread) noexcept;
   /// After the wall's step: thread, at rest or not, that the wall has moved over.
@@ -39,8 +41,12 @@ class VesselContact {
   void feel(const VesselWall& wall, std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
 
  private:
-  void sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, double reach) const noexcept;
-  void look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now) const noexcept;
+  struct Search {
+    double reach = 0.0;        // [m], that the wall has just moved by at most; 0: the thread has, past a wall that stands
+    double least = 0.0;        // [m], past the surface, that counts
+  };
+  void sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, const Search& search) const noexcept;
+  void look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now, double least) const noexcept;
   bool spoken_for(const TouchState& s, double arc) const noexcept;
 
   struct Push {
