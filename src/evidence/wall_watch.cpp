@@ -25,6 +25,8 @@ WallWatch::WallWatch(const Model& model) {
   thickness_ = model.vessel->thickness;
   if (model.needle) needle_ = model.needle->shape;
   wall_.emplace(model.vessel->mesh, model.vessel->layers, model.vessel->wall);
+  held_.assign(model.vessel->mesh.slab.size(), 0);
+  for (const int i : model.vessel->mesh.held) held_[static_cast<std::size_t>(i)] = 1;
 }
 
 void WallWatch::look(const State& s) {
@@ -90,6 +92,8 @@ void WallWatch::walk(const State& s, double from, double to, const At& at) {
 }
 
 void WallWatch::take(const State& s, double strand, const Vec3& x, const WallCrossing& near) {
+  const Triangle& face = wall_->triangles()[static_cast<std::size_t>(near.triangle)];
+  if (std::any_of(face.begin(), face.end(), [&](int i) { return held_[static_cast<std::size_t>(i)] != 0; })) return;
   const BuriedStrand found{strand, -near.fraction, share_of_thickness(s.tissue.wall, x, near), near.point, 0};
   if (found.share < kDeepShare || drawn_back(s, strand, found.depth)) return;
   BuriedStrand* last = places_.empty() ? nullptr : &places_.back();

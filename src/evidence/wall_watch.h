@@ -5,7 +5,7 @@
 // through the sample, lies between it and neither side: what goes through a wall comes by there however it slants, what is pressed into a surface or cuts across a rim does not.
 // Left alone are stretches within the reach of a track (kTrackReach, of a needle also kTrackFades; beyond the needle's point while a track is open), and what a touch draws back the way
 // it came: one near by, whose own place on the strand is half as deep below where it went in, and that none pushes against from the other side. Each place is followed, by the strand or by the wall, for as long as it stays.
-// Neglects: what goes in and through between two steps, elements that are gone, what lies less than kDeepShare deep. Test: wall_watch_test.
+// Neglects: what slips in where a frame or clamp holds the border, which has no surface there, what goes in and through between two steps, elements that are gone, what lies less than kDeepShare deep. Test: wall_watch_test.
 
 #include <optional>
 #include <span>
@@ -56,6 +56,7 @@ class WallWatch {
   double thickness_ = 0.0;         // [m]
   NeedleShape needle_;
   std::optional<VesselWall> wall_;  // its own, which goes where the scene's is; none where there is no tissue
+  std::vector<char> held_;         // of each node
   double whole_ = 0.0;             // [m], arc of the thread's end
   std::vector<Stretch> tracks_;
   std::vector<BuriedStrand> places_, before_;

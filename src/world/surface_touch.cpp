@@ -8,7 +8,19 @@ namespace {
 
 constexpr double kShallow = 50e-6;   // [m], half a wall: from deeper within a touch stays where it went in
 constexpr double kLightest = 5e-6;   // [N], half of what the wall's step leaves unbalanced
+constexpr double kJustAbove = 1e-6;  // [m], from where one looks
 constexpr double kAlong = 0.1e-3;    // [m], by which a place goes along in a step at most
+
+/// A strand that stands above the plane of its place may have slid into tissue that rises there: it is out only if one sees it from the place.
+void look_back(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x, TouchFooting& f) noexcept {
+  const WallCrossing c = meet_surface(wall, w, wall.on_triangle(w, touch.at) + (law.radius + kJustAbove) * touch.normal, x);
+  if (!c.found) return;
+  f.off = false;
+  f.slides = true;
+  f.near = c;
+  f.normal = c.normal;
+  f.depth = law.radius + (wall.on_triangle(w, c.point) - x).dot(c.normal);
+}
 
 }  // namespace
 
@@ -34,6 +46,7 @@ TouchFooting find_footing(const VesselWall& wall, const WallState& w, const Surf
   f.slides = f.near.found && f.normal.dot(touch.normal) > 0.3 && height > -kShallow;  // deep within, the far wall may be nearest
   f.off = height >= 0.0 && !(f.slides && f.near.fraction < law.radius);
   f.depth = f.slides ? law.radius - f.near.fraction : -height;
+  if (f.off) look_back(wall, w, touch, law, x, f);
   return f;
 }
 

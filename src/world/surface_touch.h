@@ -3,7 +3,7 @@
 // surface, staggered with the tissue's step, which gets the opposite load.
 //
 // The place is remembered, so that a strand cannot come out on the far side, however fast it goes. It follows what slides only: it is where x + f/k is nearest to the
-// surface, f the friction borne by bristles of stiffness k (return mapping), so that what sticks does not creep. A touch ends when the strand is above its place.
+// surface, f the friction borne by bristles of stiffness k (return mapping), so that what sticks does not creep. A touch ends when the strand is above its place and in sight of it.
 // Tests: surface_touch_test, vessel_contact_test, wire_contact_test.
 
 #include "physics/needle_track.h"

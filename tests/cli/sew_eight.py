@@ -20,6 +20,7 @@ HINTS = json.load(open(os.environ['HINTS']))['stitches'] if 'HINTS' in os.enviro
 BITES = ('aside', 'enter', 'leave', 'press', 'take')      # what is chosen before the knot
 EDGES = ((0.0, -0.3127, 0.4489), (0.0, 0.3127, 0.4489))   # [mm], as the template's hands found them
 FIRM = 0.55                                               # [mm], least tail of the knot just cut; it shortens while others are sewn beside it
+SHORT = 0.25                                              # [mm], least short end: drawn in, a knot opens stitches later
 WIDE, INNER = 0.66, 0.1                                   # [mm], most of an outer bite, least of an inner one
 OPENED = 'an earlier knot opened'
 PLACE = 21.0                                              # [degrees], most by which a stitch is beside its place
@@ -209,7 +210,7 @@ def knot_wrong(k, s, tau):
     if len(square) < k + (tau > 76) or (tau > 80 and any(n['knot'] != 'square' for n in s['stitches'])): return 'knots %s' % [(n['class'], n['loop']) for n in s['knots']]
     if tau < 55 or 70 < tau < 76: return None if s['thread_held'][1] else 'short end not held'
     if 55 < tau < 70: return None if any(n['class'] == 'overhand' for n in s['knots']) else 'first throw open'
-    return 'loose or long %s' % [(n['loop'], n['tail']) for n in square] if tau > 80 and (square[-1]['tail'] < FIRM or any(n['loop'] > LOOP or not 0.28 < n['tail'] < 1.8 for n in square)) else None
+    return 'loose or long %s' % [(n['loop'], n['tail']) for n in square] if tau > 80 and (square[-1]['tail'] < FIRM or square[-1]['short'] < SHORT or any(n['loop'] > LOOP or not 0.28 < n['tail'] < 1.8 for n in square)) else None
 
 
 def race(tries, run, most, log):
@@ -234,13 +235,13 @@ def bite_choices(random_, k):
     """The first stitch lies some 14 degrees beside the middle: so does the second one then, to be across from it."""
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name in BITES}
     usual = ((0, -.36), (.12, .06), .2), ((0, -.36), (.1, -.05), .2), ((0, -.36), (.2, .04), .2), ((.03, -.42), (.12, .06), .2), ((0, -.36), (.3, .1), .2), ((0, -.3), (.12, .06), .2)
-    between = ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
+    between = ((.12, -.42), (.2, .04), .2), ((.16, -.36), (.2, .04), .2), ((.14, -.5), (.2, .04), .2), ((.2, -.42), (.2, .04), .2), ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
     rolled = ((-.06, -.36), (.2, .04), .35), ((-.06, -.36), (.2, .04), .05), ((-.06, -.36), (.46, .02), .2), ((-.06, -.36), (.42, .1), .2), ((-.06, -.36), (.3, -.1), .2), ((-.06, -.36), (.3, .2), .2)  # an edge that went under between tight neighbours
     for enter, leave, press in rolled + between + usual if k > 5 else between + usual if k > 3 else usual:
         for aside in (.1, 0, .15) if k < 3 else (.05, -.05) if k > 5 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
-        yield dict(aside=random_.choice((0, .05, -.05, .1, -.1, .2, -.2)), enter=(near(-.05, .09), near(-.45, -.2)), leave=(near(.06, .3) if k < 4 else near(.1, .5), near(-.1, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
+        yield dict(aside=random_.choice((0, .05, -.05, .1, -.1, .2, -.2)), enter=(near(-.05, .2), near(-.45, -.2)), leave=(near(.06, .3) if k < 4 else near(.1, .5), near(-.1, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
 
 
 def knot_choices(random_, k):

@@ -15,8 +15,8 @@ struct Valley {
   VesselWall wall;
   WallState w;
 
-  Valley() : wall(card(), {{"wall", 0.15e-3, WallLaw::hooke(300e3, 0.45)}}, {}), w(wall.first_state()) {
-    for (int i = 0; i < wall.mesh().n_nodes(); ++i) w.x(2, i) += kFold * std::abs(w.x(0, i));
+  explicit Valley(double fold = kFold) : wall(card(), {{"wall", 0.15e-3, WallLaw::hooke(300e3, 0.45)}}, {}), w(wall.first_state()) {
+    for (int i = 0; i < wall.mesh().n_nodes(); ++i) w.x(2, i) += fold * std::abs(w.x(0, i));
     wall.refit(w);
   }
   static VesselMesh card() {
@@ -71,6 +71,37 @@ TEST(SurfaceTouch, FrictionInAFoldTurnsAgainstTheWay) {
       EXPECT_GT(-rub.y() / rub.norm(), 0.99);
     }
     slide_touch(touch, find_footing(v.wall, v.w, touch, t, law, x));
+  }
+}
+
+/// A strand that slides down one side of a steep valley and through the other is above the plane it stood on, and still not out: the other side hides it.
+TEST(SurfaceTouch, WhatHasSlidThroughTheOtherSideOfAFoldIsNotOut) {
+  const Valley v(1.0);
+  SurfaceTouch touch;
+  touch.at = v.wall.nearest(v.w, Vec3(-0.5e-3, -2e-3, 0.575e-3), 1e-4).point;
+  touch.normal = Vec3(1, 0, 1).normalized();
+  const Vec3 above(0.2e-3, -2e-3, 0.9e-3), through(1.0e-3, -2e-3, 0.7e-3);  // the other side is 0.15 mm thick and has its top at 0.275 and 1.075 mm there
+  EXPECT_TRUE(find_footing(v.wall, v.w, touch, RodTether(), TouchLaw(), above).off);
+  const TouchFooting f = find_footing(v.wall, v.w, touch, RodTether(), TouchLaw(), through);
+  ASSERT_FALSE(f.off);
+  EXPECT_NEAR((f.normal - Vec3(-1, 0, 1).normalized()).norm(), 0.0, 1e-6);
+  EXPECT_GT(f.depth, 0.15e-3);
+  slide_touch(touch, f);
+  EXPECT_GT(v.wall.on_triangle(v.w, touch.at).x(), 0.0) << "from now on it is pushed out of the other side";
+}
+
+/// Far in, the force is that of kDeepest, and leads all the way out.
+TEST(SurfaceTouch, WhatIsFarInIsDrawnAllTheWayOut) {
+  const Valley v(0.0);
+  SurfaceTouch touch;
+  touch.at = v.wall.nearest(v.w, Vec3(0.1e-3, -2e-3, 0.075e-3), 1e-4).point;
+  touch.normal = Vec3::UnitZ();
+  const TouchLaw law;
+  for (const double depth : {0.5 * kDeepest, 5.0 * kDeepest}) {
+    const Vec3 x(0.1e-3, -2e-3, 0.075e-3 - depth);
+    const RodTether t = hold_touch(v.wall, v.w, touch, law, x);
+    EXPECT_NEAR((t.stiffness * (t.anchor - x)).z(), law.stiffness * std::min(depth, kDeepest), 1e-9);
+    EXPECT_NEAR(t.anchor.z(), 0.075e-3, 1e-12);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "base/rng.h"
 #include "tests/allocation_count.h"
@@ -38,6 +39,7 @@ struct Draped {
   TrackState tracks;
   std::array<Vec3, 2> anchor;
   double spring = 1e-3;  // [N/m]
+  bool again = false;    // a step that takes the thread through the wall is made again
 
   explicit Draped(double height)
       : thread(across(Vec3(0, height, 1.5e-3), 31, 0.2e-3)), rod(RodMaterial(), ContactMaterial(), 40), memory(rod.make_memory()), contact(40),
@@ -59,7 +61,12 @@ struct Draped {
       rod.tethers.list.push_back(t);
     }
     contact.hold(wall, w, touches, thread, rod.tethers.list);
+    const std::optional<RodState> before = again ? std::optional(thread) : std::nullopt;
     rod.step(thread, memory, o);
+    for (int k = 0; k < 4 && before && contact.catches(wall, w, touches, tracks, thread, rod.tethers.list); ++k) {
+      thread = *before;
+      rod.step(thread, memory, o);
+    }
     contact.follow(wall, w, touches, tracks, thread, rod.tethers.list);
     wall.place_clamp(0, X_WC);
     wall.step(w);
@@ -111,6 +118,27 @@ TEST(VesselContact, ThreadFlungAtTheWallComesToRestOnIt) {
   for (int k = 0; k < d.touches.n; ++k) load += d.touches.touches[static_cast<std::size_t>(k)].load;
   const Vec3 pull = d.rod.tethers.list[0].force + d.rod.tethers.list[1].force;
   EXPECT_NEAR(load, -pull.y(), 0.02 * load) << "carries what the springs pull";
+}
+
+/// What was flung as far in is out again in a step or two, not by 30 um in each, as far as kDeepest goes: walls move faster than that.
+TEST(VesselContact, ThreadThatIsFarInIsOutAtOnce) {
+  Draped d(kRadius + 1e-6);
+  for (Vec3& a : d.anchor) a.y() -= 1.7e-3;
+  d.step({});
+  ASSERT_GT(d.overlap(), 0.3e-3);
+  for (int k = 0; k < 2; ++k) d.step({});
+  EXPECT_LT(d.overlap(), 30e-6);
+}
+
+/// A step that takes it through the wall is made again with what holds it there: it never gets in.
+TEST(VesselContact, AStepThatTakesThreadThroughIsMadeAgain) {
+  Draped d(kRadius + 1e-6);
+  d.again = true;
+  for (Vec3& a : d.anchor) a.y() -= 1.7e-3;
+  for (int k = 0; k < 5; ++k) {
+    d.step({});
+    EXPECT_LT(d.overlap(), 10e-6) << "step " << k;
+  }
 }
 
 /// Slid along its axis as fast as a clamp slides, the tube carries the thread that lies across it until the springs pull sideways with friction times what
