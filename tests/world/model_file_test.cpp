@@ -1,7 +1,9 @@
 #include "world/model_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "base/error.h"
@@ -11,6 +13,7 @@ namespace model_file_test {
 
 class ModelFile : public testing::Test {
  protected:
+  ~ModelFile() override { std::filesystem::remove(path_); }
   YamlNode open(const std::string& text) {
     std::ofstream(path_) << "format: filum-test/1\n" << text << "\n";
     return open_model_file(path_, "filum-test/1");
@@ -25,7 +28,7 @@ class ModelFile : public testing::Test {
     }
     return "not refused";
   }
-  const std::string path_ = testing::TempDir() + "model_file_test.yaml";
+  const std::string path_ = testing::TempDir() + "model_file_test_" + std::to_string(getpid()) + ".yaml";  // tests run side by side
 };
 
 TEST_F(ModelFile, FormatIsDemanded) {

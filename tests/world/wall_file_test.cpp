@@ -1,6 +1,7 @@
 #include "world/wall_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -22,9 +23,12 @@ std::string text_of(const std::string& name) {
 }
 
 VesselPreset load_text(const std::string& text) {
-  const std::string path = (std::filesystem::temp_directory_path() / "filum_wall_file_test.yaml").string();
-  std::ofstream(path) << text;
-  return load_vessel(path);
+  const struct File {
+    std::filesystem::path path;
+    ~File() { std::filesystem::remove(path); }
+  } file{std::filesystem::temp_directory_path() / ("filum_wall_file_test_" + std::to_string(getpid()) + ".yaml")};  // tests run side by side
+  std::ofstream(file.path) << text;
+  return load_vessel(file.path.string());
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
