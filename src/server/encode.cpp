@@ -163,8 +163,6 @@ std::string scene_message(const SceneDescription& scene, const std::vector<Stitc
     const PelletShape& p = scene.pellets[static_cast<std::size_t>(i)];
     objects.push_back({{"name", p.name}, {"radius", p.radius}});
   }
-  json notch = json::array();
-  for (const PostShape& bar : scene.notch) notch.push_back(post_json(bar));
   return text_of({{"type", "scene"},
                   {"task", scene.task},
                   {"title", scene.title},
@@ -174,7 +172,8 @@ std::string scene_message(const SceneDescription& scene, const std::vector<Stitc
                   {"dt", scene.dt},
                   {"post", scene.has_post ? post_json(scene.post) : json()},
                   {"base", scene.has_post ? post_json(scene.base) : json()},
-                  {"notch", notch},
+                  {"notch", list_json(scene.notch, post_json)},
+                  {"frame", list_json(scene.frame, post_json)},
                   {"floor_height", scene.floor_height},
                   {"tools", tools},
                   {"objects", objects},

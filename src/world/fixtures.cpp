@@ -15,6 +15,7 @@ RoundBar bar_of(const PostShape& bar) {
 Surroundings surroundings(const Model& model) {
   Surroundings s;
   if (model.description.has_post) s.bars = {bar_of(model.description.post), bar_of(model.description.base)};
+  for (const PostShape& bar : model.description.frame) s.bars.push_back(bar_of(bar));
   s.sheet = model.description.floor_height;
   return s;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/stage_clock.h"
+#include "world/fixtures.h"
 #include "world/needle_model.h"
 #include "world/observe.h"
 
@@ -24,6 +25,7 @@ NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle
   options_.gravity = model.step.gravity;
   options_.sheet = model.description.floor_height;
   thread_between_.reserve(kGraspPointsPerTool);
+  if (!model.description.has_post) body_.bars = surroundings(model).bars;
   for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].pads = model.instruments[i].pads;
   if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape(), model.description.capacity);
 }
@@ -165,9 +167,7 @@ bool NeedleScene::misled(const State& s, const ImplicitRod& rod) const noexcept 
 
 /// A step that takes thread through tissue is made again, held back where it went in. The pull of the last step, under which the swage is seen ahead, is not the thread's where
 /// jaws have just snapped shut on the wire: then the step is made again under the pull that the thread turned out to have.
-RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept {
-  keep(s);
-  before_thread(s, rod);
+RodStepSummary NeedleScene::attempt(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept {
   RodStepSummary thread = rod.step(s.thread, s.memory, o);
   follow(s);
   for (int k = 0; k < kMostCatches && tissue_ && tissue_->catches(s.tissue, s.thread, rod.tethers.list); ++k) {
@@ -182,6 +182,34 @@ RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodSte
     follow(s);
   }
   return thread;
+}
+
+/// No thread bears what this step left unbalanced or what holds it to the needle, or it goes through tissue faster than that pushes back.
+bool NeedleScene::overpowered(const State& s, const RodStepSummary& thread) const noexcept {
+  return thread.residual > model_.thread.strength || apart(s) > kApart || (tissue_ && tissue_->gives_way(s.tissue, s.thread));
+}
+
+/// As if they had stood still in this step, but for those whose jaws have just taken something where they are.
+void NeedleScene::hold_tools(State& s, ImplicitRod& rod) noexcept {
+  for (std::size_t i = 0; i < body_.tools.size(); ++i) {
+    if (armed_before_[i] != 0 && s.armed[i] == 0) continue;
+    ObstacleBody& body = rod.obstacles.bodies[i];
+    InstrumentState& tool = s.instruments[i];
+    body.X_end = rod.grasps.tools[i].X_now = body_.tools[i].X_end = tool.X_WT = body.X_start;
+    tool.v.setZero();
+    tool.w.setZero();
+  }
+}
+
+RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept {
+  keep(s);
+  before_thread(s, rod);
+  RodStepSummary thread = attempt(s, rod, o);
+  if (!overpowered(s, thread)) return thread;
+  take_back(s);
+  hold_tools(s, rod);
+  hold_swage(s, rod, s.needle.in_hand() ? s.needle.pull : Vec3::Zero());
+  return attempt(s, rod, o);
 }
 
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {

@@ -4,6 +4,8 @@
 // A step of thread and needle together: the needle is moved as if it had no thread, which tells how firmly its swage is held there;
 // the thread is stepped with its end held just so (rod_tether.h); then the needle follows the thread's end. Where the needle cannot follow, because
 // what was seen ahead held for another pull only (a wire that turns between the pads gives way without end), the step is taken back and made again.
+// A hand is no vise: a step in which instruments press thread harder than it bears, tear it off its needle or through tissue, is made again with the instruments held where
+// they were (a proxy of the hand that what it meets stops: Ruspini, Kolarov & Khatib, SIGGRAPH 1997).
 
 #include <memory>
 
@@ -31,7 +33,8 @@ class NeedleScene {
   /// Jaws that close on the wire, or on the vessel, stop at it and squeeze it. Call before the instruments move.
   void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
   /// After the instruments have moved from `from`: none has gone through tissue.
-  void hold_back(State& s, const std::vector<ObstacleBody>& from) const noexcept {
+  void hold_back(State& s, const std::vector<ObstacleBody>& from) noexcept {
+    armed_before_ = s.armed;
     if (tissue_) tissue_->hold_back(s.tissue, model_.instruments, from, s.instruments);
   }
   /// After the instruments have moved from `from`: tells the needle where they are, takes it, lets it go.
@@ -54,6 +57,9 @@ class NeedleScene {
   double apart(const State& s) const noexcept;
   bool may_take_tissue(const State& s, int tool) noexcept;
   bool misled(const State& s, const ImplicitRod& rod) const noexcept;
+  RodStepSummary attempt(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept;
+  bool overpowered(const State& s, const RodStepSummary& thread) const noexcept;
+  void hold_tools(State& s, ImplicitRod& rod) noexcept;
   void keep(const State& s) noexcept;
   void take_back(State& s) const noexcept;
 
@@ -67,6 +73,7 @@ class NeedleScene {
   RodState thread_before_;               // of the present step, for when it is made again
   RodMemory memory_before_;
   NeedleState needle_before_;
+  decltype(State::armed) armed_before_{};   // jaws that could take hold when the step began
   std::vector<GraspPoint> thread_between_;  // jaws, at most so many as they hold
 };
 

@@ -117,6 +117,7 @@ struct SceneDescription {
   PostShape base;                 // the bar below it; the thread lies in the slit between the two
   bool has_post = false;
   std::vector<PostShape> notch;   // two thin bars in a V: the short end is pulled in between them and stays while the hands are busy
+  std::vector<PostShape> frame;   // round bars along the border of a sheet that is stretched over them
   double floor_height = 0.0;      // [m], z of the background sheet
   int n_tools = 0;
   std::array<ToolShape, 3> tools;

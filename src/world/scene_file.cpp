@@ -188,6 +188,7 @@ std::shared_ptr<const Model> load_model(const std::string& root, const std::stri
   }
   for (const YamlNode& lip : scene.items_or_none("lips")) m->lips.push_back(read_bar(lip));
   for (const YamlNode& bar : scene.items_or_none("notch")) d.notch.push_back(read_bar(bar));
+  for (const YamlNode& bar : scene.items_or_none("frame")) d.frame.push_back(read_bar(bar));
   d.floor_height = scene.quantity("floor", "mm", Range::between(-kBenchLength.high, kBenchLength.high));
   m->post_friction = scene.number("post_friction", Range::between(0.0, 2.0));
   m->jaw_friction = scene.number("jaw_friction", Range::between(0.0, 2.0));

@@ -10,6 +10,7 @@ namespace {
 constexpr double kSpacing = 0.1e-3;     // [m], of samples along the thread at most: less than a wall is thick
 constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands for, either way
 constexpr double kThrough = 50e-6;      // [m], half a wall: as much thread goes in a step at 25 mm/s
+constexpr double kSinks = 10e-6;         // [m], by which thread that is as deep may go on in a step: 5 mm/s
 constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
@@ -79,6 +80,14 @@ bool VesselContact::catches(const VesselWall& wall, const WallState& w, TouchSta
     on_thread.push_back(hold_touch(wall, w, touch, law, (1.0 - f) * before_.col(edge) + f * before_.col(edge + 1)));
   }
   return s.n > known;
+}
+
+bool VesselContact::gives_way(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread) const noexcept {
+  return std::any_of(s.touches.begin(), s.touches.begin() + s.n, [&](const SurfaceTouch& touch) {
+    const auto [edge, f] = locate_arc(thread, touch.arc);
+    const Vec3 now = (1.0 - f) * thread.x.col(edge) + f * thread.x.col(edge + 1), before = (1.0 - f) * before_.col(edge) + f * before_.col(edge + 1);
+    return (wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough && (before - now).dot(touch.normal) > kSinks;
+  });
 }
 
 void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,

@@ -50,6 +50,14 @@ TEST(WildHands, EveryOtherTask) {
   EXPECT_GT(tried, 15);
 }
 
+/// Thread is caught between two tools that hands go on driving into each other: held where they were, they press it no further (else: 99.7 % into itself in step 505).
+TEST(WildHands, ToolsDoNotPressStrandsThroughEachOther) {
+  World world(load_model(FILUM_SOURCE_DIR, "end-to-side"));
+  const WildRun run = run_wild(world, world.state(), 3, 520);
+  EXPECT_EQ(run.fault, "");
+  EXPECT_LT(run.deepest, 0.5);
+}
+
 /// The thread's edges are numbered anew as they are halved and joined; the gap that is told is that of the edges the contacts knew.
 TEST(WildHands, StrandsAreNotSaidToBeNearerThanAnyTwoEdgesAre) {
   World world(load_model(FILUM_SOURCE_DIR, "knot-throw"));

@@ -33,6 +33,27 @@ TEST(Fixtures, BarsAndSheetStandWhereTheSceneSays) {
   }
 }
 
+/// Four round bars: the sheet's border comes out of their middle, all the way round.
+TEST(Fixtures, AFrameStandsRoundItsSheet) {
+  const auto model = load_model(FILUM_SOURCE_DIR, "needle-course", "");
+  RodObstacles o(10);
+  add_fixtures(*model, o);
+  ASSERT_EQ(model->description.frame.size(), 4u);
+  EXPECT_EQ(std::count_if(o.obstacles.begin(), o.obstacles.end(), [](const Obstacle& k) { return k.kind == Obstacle::Kind::bar; }), 4);
+  const VesselMesh& mesh = model->vessel->mesh;
+  for (const int i : mesh.held) {
+    const Vec3 middle = mesh.nodes.col(i).cwiseProduct(Vec3(1, 1, 0));
+    double nearest = 1.0;  // [m], to a bar's surface
+    for (const Obstacle& bar : o.obstacles) {
+      if (bar.kind != Obstacle::Kind::bar) continue;
+      const Vec3 axis = bar.b_B - bar.a_B;
+      const double f = std::clamp((middle - bar.a_B).dot(axis) / axis.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (bar.a_B + f * axis - middle).norm() - bar.r_a);
+    }
+    EXPECT_NEAR(nearest, 0.0, 1e-9);
+  }
+}
+
 TEST(Fixtures, PostGripsTheThreadWhereItPassesTheSlit) {
   const auto model = load_model(FILUM_SOURCE_DIR, "knot-square", "");
   const RodState thread = RodState::from_nodes(model->thread_path, 240);

@@ -141,6 +141,23 @@ TEST(VesselContact, AStepThatTakesThreadThroughIsMadeAgain) {
   }
 }
 
+/// Told of thread that is deeper than half a wall and goes on at more than 5 mm/s; not of what hands take down slowly, nor of what is on its way out.
+TEST(VesselContact, ThreadThatIsDrawnThroughTheWallIsTold) {
+  const auto told = [](double depth, double sinks) {
+    Draped d(kRadius - depth + sinks);
+    const WallCrossing top = d.wall.crossing(d.w, Vec3(0, 2.0 * kRadius, 1.5e-3), Vec3(0, 0, 1.5e-3));
+    d.touches.touches[0] = {3e-3, top.point, top.normal, 0.0, Vec3::Zero(), 0.0};
+    d.touches.n = 1;
+    d.contact.hold(d.wall, d.w, d.touches, d.thread, d.rod.tethers.list);
+    d.thread.x.row(1).array() -= sinks;
+    return d.contact.gives_way(d.wall, d.w, d.touches, d.thread);
+  };
+  EXPECT_TRUE(told(60e-6, 12e-6));
+  EXPECT_FALSE(told(60e-6, 8e-6)) << "slowly";
+  EXPECT_FALSE(told(60e-6, -30e-6)) << "on its way out";
+  EXPECT_FALSE(told(40e-6, 12e-6)) << "where the wall pushes it back";
+}
+
 /// Slid along its axis as fast as a clamp slides, the tube carries the thread that lies across it until the springs pull sideways with friction times what
 /// they press it on with; from then on it slides through underneath.
 TEST(VesselContact, AWallThatSlidesCarriesThreadByFriction) {

@@ -97,6 +97,7 @@ export class Stage {
     for (const bar of [message.post, message.base]) if (bar) this.addBar(bar);
     if (message.post) this.addStands(message.post);
     this.addNotch(message.notch ?? []);
+    for (const bar of message.frame ?? []) this.addBar(bar);
     this.brain = message.brain ? new Brain(message.brain, this.painted) : null;
     if (this.brain) this.content.add(this.brain.group);
     this.instruments = (this.brain ? [] : message.tools).map((shape, index) => new Instrument(shape, index, this.materials));
