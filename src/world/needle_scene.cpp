@@ -14,6 +14,8 @@ namespace {
 constexpr double kSwage = 2e4;         // [N/m], of the joint between needle and thread
 constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
 constexpr double kApart = 20e-6;        // [m], between thread and needle: at kSwage 0.4 N, as much as a thread of 10-0 bears
+constexpr double kSinks = 10e-6;         // [m], in a step: 5 mm/s
+constexpr double kHeldApart = 15e-6;     // [m]: a thread of 10-0 that is torn off by 0.2 N breaks before
 constexpr double kClosing = 1e-3;       // [rad/s], of jaws that close
 constexpr int kMostCatches = 4;         // times that a step is made again because it took thread through tissue
 constexpr int kMostRepeats = 4;         // of a step that ends with them apart
@@ -25,6 +27,8 @@ NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle
   options_.gravity = model.step.gravity;
   options_.sheet = model.description.floor_height;
   thread_between_.reserve(kGraspPointsPerTool);
+  moved_.reserve(model.instruments.size());
+  held_.reserve(model.instruments.size());
   if (!model.description.has_post) body_.bars = surroundings(model).bars;
   for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].pads = model.instruments[i].pads;
   if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape(), model.description.capacity);
@@ -184,20 +188,16 @@ RodStepSummary NeedleScene::attempt(State& s, ImplicitRod& rod, const RodStepOpt
   return thread;
 }
 
-/// No thread bears what this step left unbalanced or what holds it to the needle, or it goes through tissue faster than that pushes back.
-bool NeedleScene::overpowered(const State& s, const RodStepSummary& thread) const noexcept {
-  return thread.residual > model_.thread.strength || apart(s) > kApart || (tissue_ && tissue_->gives_way(s.tissue, s.thread));
+/// Above one: no thread bears what the step left unbalanced or what tears it off its needle, or it goes through tissue at more than kSinks, deeper than that pushes back.
+double NeedleScene::overload(const State& s, const RodStepSummary& thread) const noexcept {
+  const double through = tissue_ ? tissue_->sinks(s.tissue, s.thread) : 0.0;
+  return std::max({thread.residual / model_.thread.strength, apart(s) / kHeldApart, through / kSinks});
 }
 
-/// As if they had stood still in this step, but for those whose jaws have just taken something where they are.
-void NeedleScene::hold_tools(State& s, ImplicitRod& rod) noexcept {
+void NeedleScene::put_tools(State& s, ImplicitRod& rod, const std::vector<InstrumentState>& there) noexcept {
   for (std::size_t i = 0; i < body_.tools.size(); ++i) {
-    if (armed_before_[i] != 0 && s.armed[i] == 0) continue;
-    ObstacleBody& body = rod.obstacles.bodies[i];
-    InstrumentState& tool = s.instruments[i];
-    body.X_end = rod.grasps.tools[i].X_now = body_.tools[i].X_end = tool.X_WT = body.X_start;
-    tool.v.setZero();
-    tool.w.setZero();
+    s.instruments[i] = there[i];
+    rod.obstacles.bodies[i].X_end = rod.grasps.tools[i].X_now = body_.tools[i].X_end = there[i].X_WT;
   }
 }
 
@@ -205,11 +205,22 @@ RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodSte
   keep(s);
   before_thread(s, rod);
   RodStepSummary thread = attempt(s, rod, o);
-  if (!overpowered(s, thread)) return thread;
-  take_back(s);
-  hold_tools(s, rod);
-  hold_swage(s, rod, s.needle.in_hand() ? s.needle.pull : Vec3::Zero());
-  return attempt(s, rod, o);
+  const double moved = overload(s, thread);
+  if (moved <= 1.0) return thread;
+  const auto again = [&](const std::vector<InstrumentState>& there) {
+    take_back(s);
+    put_tools(s, rod, there);
+    hold_swage(s, rod, s.needle.in_hand() ? s.needle.pull : Vec3::Zero());
+    return attempt(s, rod, o);
+  };
+  moved_ = held_ = s.instruments;
+  for (std::size_t i = 0; i < held_.size(); ++i) {
+    if (armed_before_[i] != 0 && s.armed[i] == 0) continue;  // has just taken something where it is
+    held_[i].X_WT = rod.obstacles.bodies[i].X_start;
+    held_[i].v = held_[i].w = Vec3::Zero();
+  }
+  thread = again(held_);
+  return overload(s, thread) < moved ? thread : again(moved_);  // a hand may always let go of what it presses
 }
 
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {

@@ -5,7 +5,7 @@
 // the thread is stepped with its end held just so (rod_tether.h); then the needle follows the thread's end. Where the needle cannot follow, because
 // what was seen ahead held for another pull only (a wire that turns between the pads gives way without end), the step is taken back and made again.
 // A hand is no vise: a step in which instruments press thread harder than it bears, tear it off its needle or through tissue, is made again with the instruments held where
-// they were (a proxy of the hand that what it meets stops: Ruspini, Kolarov & Khatib, SIGGRAPH 1997).
+// they were, if that is less (a proxy of the hand that what it meets stops: Ruspini, Kolarov & Khatib, SIGGRAPH 1997).
 
 #include <memory>
 
@@ -58,8 +58,8 @@ class NeedleScene {
   bool may_take_tissue(const State& s, int tool) noexcept;
   bool misled(const State& s, const ImplicitRod& rod) const noexcept;
   RodStepSummary attempt(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept;
-  bool overpowered(const State& s, const RodStepSummary& thread) const noexcept;
-  void hold_tools(State& s, ImplicitRod& rod) noexcept;
+  double overload(const State& s, const RodStepSummary& thread) const noexcept;
+  void put_tools(State& s, ImplicitRod& rod, const std::vector<InstrumentState>& there) noexcept;
   void keep(const State& s) noexcept;
   void take_back(State& s) const noexcept;
 
@@ -74,6 +74,7 @@ class NeedleScene {
   RodMemory memory_before_;
   NeedleState needle_before_;
   decltype(State::armed) armed_before_{};   // jaws that could take hold when the step began
+  std::vector<InstrumentState> moved_, held_;  // the instruments at the end of their ways, and where they were
   std::vector<GraspPoint> thread_between_;  // jaws, at most so many as they hold
 };
 

@@ -10,7 +10,6 @@ namespace {
 constexpr double kSpacing = 0.1e-3;     // [m], of samples along the thread at most: less than a wall is thick
 constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands for, either way
 constexpr double kThrough = 50e-6;      // [m], half a wall: as much thread goes in a step at 25 mm/s
-constexpr double kSinks = 10e-6;         // [m], by which thread that is as deep may go on in a step: 5 mm/s
 constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
@@ -82,12 +81,15 @@ bool VesselContact::catches(const VesselWall& wall, const WallState& w, TouchSta
   return s.n > known;
 }
 
-bool VesselContact::gives_way(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread) const noexcept {
-  return std::any_of(s.touches.begin(), s.touches.begin() + s.n, [&](const SurfaceTouch& touch) {
+double VesselContact::sinks(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread) const noexcept {
+  double most = 0.0;
+  for (int k = 0; k < s.n; ++k) {
+    const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
     const auto [edge, f] = locate_arc(thread, touch.arc);
     const Vec3 now = (1.0 - f) * thread.x.col(edge) + f * thread.x.col(edge + 1), before = (1.0 - f) * before_.col(edge) + f * before_.col(edge + 1);
-    return (wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough && (before - now).dot(touch.normal) > kSinks;
-  });
+    if ((wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough) most = std::max(most, (before - now).dot(touch.normal));
+  }
+  return most;
 }
 
 void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,

@@ -28,8 +28,8 @@ class VesselContact {
   void hold(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread, std::vector<RodTether>& on_thread) noexcept;
   /// Of a step that the thread has just made and that can be made again: a sample that went far past the surface gets a touch, to hold it back then. True if one did.
   bool catches(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, std::vector<RodTether>& on_thread) const noexcept;
-  /// Has that step taken thread on, and fast, where it was too deep for the wall to push back any harder?
-  bool gives_way(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread) const noexcept;
+  /// [m], by which that step has taken thread on where it is too deep for the wall to push back any harder; at most.
+  double sinks(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread) const noexcept;
   void follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
               const std::vector<RodTether>& on_thread) noexcept;
   /// After the wall's step: thread, at rest or not, that the wall has moved over.
