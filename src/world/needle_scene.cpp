@@ -14,8 +14,8 @@ namespace {
 constexpr double kSwage = 2e4;         // [N/m], of the joint between needle and thread
 constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
 constexpr double kApart = 20e-6;        // [m], between thread and needle: at kSwage 0.4 N, as much as a thread of 10-0 bears
-constexpr double kSinks = 10e-6;         // [m], in a step: 5 mm/s
-constexpr double kHeldApart = 15e-6;     // [m]: a thread of 10-0 that is torn off by 0.2 N breaks before
+constexpr double kSinks = 10e-6;        // [m], of thread into tissue in a step: 5 mm/s
+constexpr double kHeldApart = 15e-6;    // [m]: a thread of 10-0 that is torn off by 0.2 N breaks before
 constexpr double kClosing = 1e-3;       // [rad/s], of jaws that close
 constexpr int kMostCatches = 4;         // times that a step is made again because it took thread through tissue
 constexpr int kMostRepeats = 4;         // of a step that ends with them apart
@@ -29,7 +29,7 @@ NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle
   thread_between_.reserve(kGraspPointsPerTool);
   moved_.reserve(model.instruments.size());
   held_.reserve(model.instruments.size());
-  if (!model.description.has_post) body_.bars = surroundings(model).bars;
+  if (!model.description.has_post) body_.bars = surroundings(model).bars;  // a post it does not touch
   for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].pads = model.instruments[i].pads;
   if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape(), model.description.capacity);
 }
@@ -201,6 +201,8 @@ void NeedleScene::put_tools(State& s, ImplicitRod& rod, const std::vector<Instru
   }
 }
 
+/// Where the instruments' ways overload thread or tissue they stand still, but for those whose jaws have just taken something where they are; unless that is no better:
+/// a hand may always let go of what it presses.
 RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept {
   keep(s);
   before_thread(s, rod);
@@ -215,12 +217,12 @@ RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodSte
   };
   moved_ = held_ = s.instruments;
   for (std::size_t i = 0; i < held_.size(); ++i) {
-    if (armed_before_[i] != 0 && s.armed[i] == 0) continue;  // has just taken something where it is
+    if (armed_before_[i] != 0 && s.armed[i] == 0) continue;
     held_[i].X_WT = rod.obstacles.bodies[i].X_start;
     held_[i].v = held_[i].w = Vec3::Zero();
   }
   thread = again(held_);
-  return overload(s, thread) < moved ? thread : again(moved_);  // a hand may always let go of what it presses
+  return overload(s, thread) < moved ? thread : again(moved_);
 }
 
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {

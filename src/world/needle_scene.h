@@ -73,7 +73,7 @@ class NeedleScene {
   RodState thread_before_;               // of the present step, for when it is made again
   RodMemory memory_before_;
   NeedleState needle_before_;
-  decltype(State::armed) armed_before_{};   // jaws that could take hold when the step began
+  decltype(State::armed) armed_before_{};  // jaws that could take hold when the step began
   std::vector<InstrumentState> moved_, held_;  // the instruments at the end of their ways, and where they were
   std::vector<GraspPoint> thread_between_;  // jaws, at most so many as they hold
 };
