@@ -32,8 +32,8 @@ def of_scene(field, default=None):
 
 
 STITCHES = int(of_scene('sutures', '"1"').strip('"'))
-LOOP = 3.6                                                # [mm], most of a knot's loop
-SLIDES = {8: (.7, .6, .8), 6: (.6, .55, .65)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
+LOOP = 4.2 if STITCHES == 6 else 3.6                      # [mm], most of a knot's loop
+SLIDES = {8: (.7, .6, .8), 6: (.6, .8, .55)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
 
 # Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave:
 # of the needle beside the template's way, (y, z) from the first, the second edge; press: of the forceps on the second edge; take: where along the needle they take it; cut: of the ends from the knot; slide, last, open: how long the clamp slides before the tie, before
@@ -238,7 +238,7 @@ def bite_choices(random_, k):
     between = ((.12, -.42), (.2, .04), .2), ((.16, -.36), (.2, .04), .2), ((.14, -.5), (.2, .04), .2), ((.2, -.42), (.2, .04), .2), ((.05, -.42), (.2, .04), .2), ((.05, -.3), (.2, .04), .2), ((0, -.48), (.2, .04), .2)  # stitches that hold the edges together
     rolled = ((-.06, -.36), (.2, .04), .35), ((-.06, -.36), (.2, .04), .05), ((-.06, -.36), (.46, .02), .2), ((-.06, -.36), (.42, .1), .2), ((-.06, -.36), (.3, -.1), .2), ((-.06, -.36), (.3, .2), .2)  # an edge that went under between tight neighbours
     for enter, leave, press in rolled + between + usual if k > 5 else between + usual if k > 3 else usual:
-        for aside in (.1, 0, .15) if k < 3 else (.05, -.05) if k > 5 else (0, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
+        for aside in (.1, 0, .15) if k < 3 else (.05, -.05) if k > 5 else (0, .15, .05, -.1): yield dict(aside=aside, enter=enter, leave=leave, press=(press, 0), take=3.7)
     while True:
         near = lambda a, b: round(random_.uniform(a, b), 3)
         yield dict(aside=random_.choice((0, .05, -.05, .1, -.1, .2, -.2)), enter=(near(-.05, .2), near(-.45, -.2)), leave=(near(.06, .3) if k < 4 else near(.1, .5), near(-.1, .12)), press=(near(.1, .25), near(-.05, .05)), take=random_.choice([3.6, 3.65, 3.7]))
@@ -247,7 +247,7 @@ def bite_choices(random_, k):
 def knot_choices(random_, k):
     """Before the ends of the last stitch are cut, the clamp comes as near as before each."""
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name not in BITES}
-    lasts = (.18, .3, .45) if k + 1 == STITCHES else (.18,)
+    lasts = ((.8, .45) if STITCHES == 6 else (.18, .3, .45)) if k + 1 == STITCHES else (.18,)
     yield from (dict(slide=slide, let_go=(0, -.3, -.45), first=first, firm=firm, cut=1.5, last=last) for last in lasts for slide in SLIDES
                 for first, firm in ((10, 30), (9, 30)))
     while True:
