@@ -75,19 +75,22 @@ bool VesselContact::catches(const VesselWall& wall, const WallState& w, TouchSta
   sweep(wall, w, s, tracks, thread, {0.0, kThrough});
   for (int k = known; k < s.n && on_thread.size() < on_thread.capacity(); ++k) {
     const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
-    const auto [edge, f] = locate_arc(thread, touch.arc);
-    on_thread.push_back(hold_touch(wall, w, touch, law, (1.0 - f) * before_.col(edge) + f * before_.col(edge + 1)));
+    on_thread.push_back(hold_touch(wall, w, touch, law, was_at(thread, touch.arc)));
   }
   return s.n > known;
+}
+
+Vec3 VesselContact::was_at(const RodState& thread, double arc) const noexcept {
+  const auto [edge, f] = locate_arc(thread, arc);
+  return (1.0 - f) * before_.col(edge) + f * before_.col(edge + 1);
 }
 
 double VesselContact::sinks(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread) const noexcept {
   double most = 0.0;
   for (int k = 0; k < s.n; ++k) {
     const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
-    const auto [edge, f] = locate_arc(thread, touch.arc);
-    const Vec3 now = (1.0 - f) * thread.x.col(edge) + f * thread.x.col(edge + 1), before = (1.0 - f) * before_.col(edge) + f * before_.col(edge + 1);
-    if ((wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough) most = std::max(most, (before - now).dot(touch.normal));
+    const Vec3 now = at_arc(thread, touch.arc);
+    if ((wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough) most = std::max(most, (was_at(thread, touch.arc) - now).dot(touch.normal));
   }
   return most;
 }

@@ -50,6 +50,7 @@ class VesselContact {
   void sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, const Search& search) const noexcept;
   void look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now, double least) const noexcept;
   bool spoken_for(const TouchState& s, double arc) const noexcept;
+  Vec3 was_at(const RodState& thread, double arc) const noexcept;  // [m], at the start of the step
 
   struct Push {
     int number, tool;

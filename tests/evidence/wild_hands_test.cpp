@@ -50,7 +50,7 @@ TEST(WildHands, EveryOtherTask) {
   EXPECT_GT(tried, 15);
 }
 
-/// Thread is caught between two tools that hands go on driving into each other: held where they were, they press it no further (else: 99.7 % into itself in step 505).
+/// Thread is caught between two tools that hands go on driving into each other: held where they were, they press it no further (else: through itself in step 505).
 TEST(WildHands, ToolsDoNotPressStrandsThroughEachOther) {
   World world(load_model(FILUM_SOURCE_DIR, "end-to-side"));
   const WildRun run = run_wild(world, world.state(), 3, 520);
