@@ -18,8 +18,9 @@ void require_unused(const fs::path& path) {
 }
 
 NewFiles::NewFiles(const std::string& folder, std::vector<std::string> names, std::string shared) : folder_(folder), names_(std::move(names)) {
+  for (fs::path made = folder_; !made.empty() && !is_there(made); made = made.parent_path()) made_.push_back(made);
   std::error_code error;
-  made_ = fs::create_directories(folder_, error);
+  fs::create_directories(folder_, error);
   if (!is_folder(folder_)) throw InputError(folder, "export", error.message(), "a folder that can be made");
   for (const std::string& name : names_) require_unused(folder_ / name);
   names_.push_back(std::move(shared));
@@ -34,7 +35,7 @@ NewFiles::NewFiles(const std::string& folder, std::vector<std::string> names, st
 NewFiles::~NewFiles() {
   std::error_code ignored;
   fs::remove_all(aside_, ignored);
-  if (made_) fs::remove(folder_, ignored);  // empty where nothing was put
+  for (const fs::path& made : made_) fs::remove(made, ignored);  // those that are empty: where nothing was put
 }
 
 std::vector<std::string> NewFiles::put() {

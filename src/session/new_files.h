@@ -32,7 +32,7 @@ class NewFiles {
  private:
   std::filesystem::path folder_, aside_;
   std::vector<std::string> names_;
-  bool made_ = false;  // the folder, for this
+  std::vector<std::filesystem::path> made_;  // the folder and those above it, for this, innermost first
 };
 
 }  // namespace filum
