@@ -1,4 +1,5 @@
 if(TARGET filum_video)
+  filum_test(video/partial_match opencv_core opencv_imgproc opencv_videoio)
   filum_test(video/tracks opencv_core opencv_imgproc opencv_videoio)
   filum_test(video/video_trial filum_reconcile opencv_core opencv_imgproc opencv_videoio)
 else()
