@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "world/scene_file.h"
+#include "world/vessel_model.h"
 
 namespace filum {
 namespace fixtures_test {
