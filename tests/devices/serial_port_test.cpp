@@ -7,6 +7,8 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <thread>
+#include <vector>
 
 #include "tests/devices/pty.h"
 
