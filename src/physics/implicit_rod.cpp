@@ -10,7 +10,7 @@ namespace filum {
 namespace {
 
 constexpr int kMostHalvings = 14;
-constexpr int kMostTethers = 256;
+constexpr int kMostTethers = 640;
 constexpr int kMoreToArrive = 3;  // times the iterations while a body is under way: whoever moves it has to leave it where it is if that is not enough
 constexpr int kLoadsFall = 6;       // iterations of a step in which friction's loads follow the normal forces down
 constexpr double kLongestReach = 16.0;  // [radii], of a move that is looked at for crossings: all pairs within it must be known

@@ -146,7 +146,7 @@ VesselWall::VesselWall(VesselMesh mesh, std::vector<WallLayer> layers, const Wal
   turned_ = steer_ = Eigen::VectorXf::Zero(3 * n);
   options_.memory = std::clamp(options_.memory, 1, kMostPairs);
   pairs_ = WallPairs(3 * n, options_.memory);
-  found_.reserve(256);
+  found_.reserve(tree_.triangles().size());
 }
 
 WallState VesselWall::first_state() const {

@@ -115,6 +115,13 @@ class VesselWall {
   WallCrossing crossing(const WallState& state, const Vec3& a, const Vec3& b, double from = 0.0) const noexcept;
   /// Material point of the surface nearest to q within `reach`; fraction is then the distance [m], negative inside the tissue.
   WallCrossing nearest(const WallState& state, const Vec3& q, double reach) const noexcept;
+  /// The same of the surface as it was before the last step, at x - h v; refit() has been told where it is now. `farthest` [m]: what it has moved by at most.
+  WallCrossing nearest_before(const WallState& state, const Vec3& q, double reach, double farthest) const noexcept;
+  struct SideNormals {
+    Vec3 before, now;          // unit, outward
+  };
+  /// Of the triangle that a point of the surface lies on, before the last step and after it.
+  SideNormals side_normals(const WallState& state, const WallPoint& at) const noexcept;
   /// Triangles that a ball about q of this radius meets or nearly does, each with the place that is nearest to q, the nearest first; only that if q is inside
   /// the tissue. Returns how many, at most `room`.
   int around(const WallState& state, const Vec3& q, double radius, WallCrossing* places, int room) const noexcept;
@@ -130,6 +137,14 @@ class VesselWall {
   static constexpr double kStiff = 1.0;  // [N/m], springs above this come into the first matrix
 
  private:
+  struct OnTriangle {
+    Triangle nodes;
+    Vec3 weights;              // of them
+  };
+  OnTriangle triangle_of(const WallPoint& at) const noexcept;
+  Vec3 was(const WallState& state, int node) const noexcept { return state.x.col(node) - options_.dt * state.v.col(node); }  // [m], before the last step
+  template <class At>
+  WallCrossing nearest_of(const WallState& state, const Vec3& q, double reach, double search, const At& at) const noexcept;
   void gather_springs() noexcept;
   std::span<WallLoad> loads() noexcept { return {loads_.data(), static_cast<std::size_t>(n_loads_)}; }
   int add(const WallLoad& load) noexcept;

@@ -12,6 +12,13 @@ namespace {
 
 Vec3 corner_local(int a) noexcept { return {a & 1 ? 1.0 : -1.0, a & 2 ? 1.0 : -1.0, a & 4 ? 1.0 : -1.0}; }
 
+/// Unit, of a triangle whose corners lie `at`; none of one that has no area.
+template <class At>
+Vec3 normal_of(const Triangle& t, const At& at) noexcept {
+  const Vec3 p = at(t[0]);
+  return Vec3(at(t[1]) - p).cross(Vec3(at(t[2]) - p)).normalized();
+}
+
 /// Fraction of the segment where it meets the triangle and the weights of the corners; false if it does not.
 bool meets(const Vec3& a, const Vec3& d, const Vec3& p, const Vec3& q, const Vec3& r, double& fraction, Vec3& weights) noexcept {
   const Vec3 e1 = q - p, e2 = r - p, h = d.cross(e2);
@@ -44,18 +51,28 @@ Vec3 VesselWall::velocity(const WallState& state, const WallPoint& at) const noe
   return p;
 }
 
-Vec3 VesselWall::on_triangle(const WallState& state, const WallPoint& at) const noexcept {
+VesselWall::OnTriangle VesselWall::triangle_of(const WallPoint& at) const noexcept {
   int axis = 0;
   at.local.cwiseAbs().maxCoeff(&axis);
   const auto& side = kElementSides[static_cast<std::size_t>(2 * axis + (at.local[axis] < 0.0))];
   const auto& nodes = mesh_.elements[static_cast<std::size_t>(at.element)];
-  const auto corner = [&](std::size_t c) -> Vec3 { return state.x.col(nodes[static_cast<std::size_t>(side[c])]); };
+  const auto corner = [&](std::size_t c) { return nodes[static_cast<std::size_t>(side[c])]; };
   const auto share = [&](std::size_t c) {  // of the way from corner 0 to c, by the local coordinates
     const Vec3 from = corner_local(side[0]), way = corner_local(side[c]) - from;
     return (at.local - from).dot(way) / way.squaredNorm();
   };
   const double u = share(1), v = share(3);  // a side is cut from corner 0 to 2, see face_triangles()
-  return u >= v ? Vec3((1.0 - u) * corner(0) + (u - v) * corner(1) + v * corner(2)) : Vec3((1.0 - v) * corner(0) + u * corner(2) + (v - u) * corner(3));
+  return u >= v ? OnTriangle{{corner(0), corner(1), corner(2)}, {1.0 - u, u - v, v}} : OnTriangle{{corner(0), corner(2), corner(3)}, {1.0 - v, u, v - u}};
+}
+
+Vec3 VesselWall::on_triangle(const WallState& state, const WallPoint& at) const noexcept {
+  const OnTriangle t = triangle_of(at);
+  return t.weights[0] * state.x.col(t.nodes[0]) + t.weights[1] * state.x.col(t.nodes[1]) + t.weights[2] * state.x.col(t.nodes[2]);
+}
+
+VesselWall::SideNormals VesselWall::side_normals(const WallState& state, const WallPoint& at) const noexcept {
+  const Triangle t = triangle_of(at).nodes;
+  return {normal_of(t, [&](int i) -> Vec3 { return was(state, i); }), normal_of(t, [&](int i) -> Vec3 { return state.x.col(i); })};
 }
 
 Mat3 VesselWall::directions(const WallState& state, const WallPoint& at) const noexcept {
@@ -78,8 +95,9 @@ void VesselWall::refit(const WallState& state) noexcept { tree_.refit(state.x); 
 
 namespace {
 
-/// The crossing or nearest point at `weights` of a triangle.
-void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, const Points& x, int triangle, const Vec3& weights, WallCrossing& c) noexcept {
+/// The crossing or nearest point at `weights` of a triangle whose corners lie `at`.
+template <class At>
+void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, const At& at, int triangle, const Vec3& weights, WallCrossing& c) noexcept {
   const WallFace& face = mesh.faces[static_cast<std::size_t>(triangle / 2)];
   const std::array<std::size_t, 3> corner = triangle % 2 ? std::array<std::size_t, 3>{0, 2, 3} : std::array<std::size_t, 3>{0, 1, 2};
   c.found = true;
@@ -89,8 +107,7 @@ void describe(const VesselMesh& mesh, const std::vector<Triangle>& triangles, co
   c.point.element = face.element;
   c.point.local.setZero();
   for (int k = 0; k < 3; ++k) c.point.local += weights[k] * corner_local(face.corner[corner[static_cast<std::size_t>(k)]]);
-  const Triangle& t = triangles[static_cast<std::size_t>(triangle)];
-  c.normal = Vec3(x.col(t[1]) - x.col(t[0])).cross(Vec3(x.col(t[2]) - x.col(t[0]))).normalized();
+  c.normal = normal_of(triangles[static_cast<std::size_t>(triangle)], at);
 }
 
 /// From the place that is nearest to q, at `distance`.
@@ -124,28 +141,35 @@ WallCrossing VesselWall::crossing(const WallState& state, const Vec3& a, const V
     weights = w;
   }
   if (!best.found) return best;
-  describe(mesh_, triangles(), state.x, triangle, weights, best);
+  describe(mesh_, triangles(), [&](int i) -> Vec3 { return state.x.col(i); }, triangle, weights, best);
   best.layer = layer_at(best.point);
   return best;
 }
 
 WallCrossing VesselWall::nearest(const WallState& state, const Vec3& q, double reach) const noexcept {
+  return nearest_of(state, q, reach, reach, [&](int i) -> Vec3 { return state.x.col(i); });
+}
+
+WallCrossing VesselWall::nearest_before(const WallState& state, const Vec3& q, double reach, double farthest) const noexcept {
+  return nearest_of(state, q, reach, reach + farthest, [&](int i) -> Vec3 { return was(state, i); });
+}
+
+template <class At>
+WallCrossing VesselWall::nearest_of(const WallState& state, const Vec3& q, double reach, double search, const At& at) const noexcept {
   WallCrossing best;
   found_.clear();
-  tree_.overlaps({q - Vec3::Constant(reach), q + Vec3::Constant(reach)}, found_);
+  tree_.overlaps({q - Vec3::Constant(search), q + Vec3::Constant(search)}, found_);
   int triangle = -1;
   double least = reach;
   TrianglePoint place;
   double facing = -1.0;  // of ties at shared sides the triangle that q faces most tells inside from outside; -1: not asked yet
   const auto face = [&](int k, const TrianglePoint& c) {
-    const Triangle& t = triangles()[static_cast<std::size_t>(k)];
-    const Vec3 p0 = state.x.col(t[0]), p1 = state.x.col(t[1]), p2 = state.x.col(t[2]);
-    return std::abs((q - c.point).dot((p1 - p0).cross(p2 - p0).normalized()));
+    return std::abs((q - c.point).dot(normal_of(triangles()[static_cast<std::size_t>(k)], at)));
   };
   for (const int k : found_) {
     const Triangle& t = triangles()[static_cast<std::size_t>(k)];
     if (state.soundness[static_cast<std::size_t>(mesh_.faces[static_cast<std::size_t>(k / 2)].element)] == 0.0) continue;
-    const TrianglePoint c = closest_on_triangle(q, state.x.col(t[0]), state.x.col(t[1]), state.x.col(t[2]));
+    const TrianglePoint c = closest_on_triangle(q, at(t[0]), at(t[1]), at(t[2]));
     const double distance = (q - c.point).norm();
     if (distance > least + 1e-12) continue;
     double own = -1.0;
@@ -160,7 +184,7 @@ WallCrossing VesselWall::nearest(const WallState& state, const Vec3& q, double r
     place = c;
   }
   if (triangle < 0) return best;
-  describe(mesh_, triangles(), state.x, triangle, place.weights, best);
+  describe(mesh_, triangles(), at, triangle, place.weights, best);
   const double distance = (q - place.point).norm();
   best.fraction = (q - place.point).dot(best.normal) >= 0.0 ? distance : -distance;
   best.away = away_from(best, place.point, q, distance);
@@ -182,7 +206,7 @@ int VesselWall::around(const WallState& state, const Vec3& q, double radius, Wal
     n = std::min(n + 1, room);
     int j = n - 1;
     for (; j > 1 && places[j - 1].fraction > distance; --j) places[j] = places[j - 1];  // the nearest first
-    describe(mesh_, triangles(), state.x, k, c.weights, places[j]);
+    describe(mesh_, triangles(), [&](int i) -> Vec3 { return state.x.col(i); }, k, c.weights, places[j]);
     places[j].fraction = distance;
     places[j].away = away_from(places[j], c.point, q, distance);
     places[j].layer = layer_at(places[j].point);

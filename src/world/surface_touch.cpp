@@ -10,6 +10,8 @@ constexpr double kShallow = 50e-6;   // [m], half a wall: from deeper within a t
 constexpr double kLightest = 5e-6;   // [N], half of what the wall's step leaves unbalanced
 constexpr double kJustAbove = 1e-6;  // [m], from where one looks
 constexpr double kAlong = 0.1e-3;    // [m], by which a place goes along in a step at most
+constexpr double kFacing = 0.3;      // [1], cosine: of sides that look the same way
+constexpr double kAbove = 1e-3;    // [m], how far above a strand its place is looked for
 
 /// A strand that stands above the plane of its place may have slid into tissue that rises there: it is out only if one sees it from the place.
 void look_back(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x, TouchFooting& f) noexcept {
@@ -43,11 +45,32 @@ TouchFooting find_footing(const VesselWall& wall, const WallState& w, const Surf
   const Vec3 rub = t.force - t.force.dot(touch.normal) * touch.normal, q = x + rub / law.stiffness;  // the bristle stays bent by what friction bears: what sticks does not creep
   f.near = wall.nearest(w, q, kAlong + law.radius);
   f.normal = f.near.away;
-  f.slides = f.near.found && f.normal.dot(touch.normal) > 0.3 && height > -kShallow;  // deep within, the far wall may be nearest
-  f.off = height >= 0.0 && !(f.slides && f.near.fraction < law.radius);
+  f.deep = is_deep(wall, w, touch, law, x);
+  const bool faces = f.near.found && f.normal.dot(touch.normal) > kFacing;
+  const bool round_a_rim = !f.near.found || (!faces && f.near.fraction > law.radius);  // beside its place, and outside
+  f.slides = faces && !f.deep;
+  f.off = f.slides || f.deep || height >= 0.0 ? height >= 0.0 && !(f.slides && f.near.fraction < law.radius) : round_a_rim;
   f.depth = f.slides ? law.radius - f.near.fraction : -height;
   if (f.off) look_back(wall, w, touch, law, x, f);
   return f;
+}
+
+void stay_above(const VesselWall& wall, const WallState& w, SurfaceTouch& touch, const Vec3& x) noexcept {
+  const Vec3 high = x + kAbove * touch.normal;
+  for (WallCrossing c = wall.crossing(w, x, high); c.found; c = wall.crossing(w, x, high, c.fraction + 1e-9)) {
+    if (c.normal.dot(touch.normal) < kFacing) continue;
+    touch.at = c.point;
+    return;
+  }
+}
+
+void turn_touch(const VesselWall& wall, const WallState& w, SurfaceTouch& touch) noexcept {
+  const VesselWall::SideNormals side = wall.side_normals(w, touch.at);
+  touch.normal = (Quat::FromTwoVectors(side.before, side.now) * touch.normal).normalized();
+}
+
+bool is_deep(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x) noexcept {
+  return (x - wall.on_triangle(w, touch.at)).dot(touch.normal) - law.radius <= -kShallow;
 }
 
 void lean_touch(VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const RodTether& t, const TouchLaw& law) noexcept {

@@ -24,6 +24,7 @@ struct TouchFooting {
   double depth = 0.0;          // [m], of the strand's skin below the surface
   bool off = false;            // it is free again, and the touch has ended
   bool slides = false;         // to `near`
+  bool deep = false;           // is_deep()
   WallCrossing near;
   Vec3 normal;                 // there: `away`, the gradient of the distance
 };
@@ -31,6 +32,12 @@ TouchFooting find_footing(const VesselWall& wall, const WallState& w, const Surf
 /// What a strand that the wall can push aside does to it in its coming step. A thread is no post: a wall that comes on at 5 mm/s would be dented by one of 200 N/m,
 /// where the thread weighs 0.1 ug and moves off. It bears at most twice what it bore, in the next step as much again; what is light just weighs.
 void lean_touch(VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const RodTether& t, const TouchLaw& law) noexcept;
+/// Has the strand at x gone so far past its place that the surface nearest to it may be another one? It is drawn back the way it came.
+bool is_deep(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x) noexcept;
+/// The place of one that is deep goes along over it: where its way out, along the normal, leaves the tissue on the side that it came from.
+void stay_above(const VesselWall& wall, const WallState& w, SurfaceTouch& touch, const Vec3& x) noexcept;
+/// That way turns with the wall, after the wall's step.
+void turn_touch(const VesselWall& wall, const WallState& w, SurfaceTouch& touch) noexcept;
 /// The place goes along with what slid.
 void slide_touch(SurfaceTouch& touch, const TouchFooting& footing) noexcept;
 /// Where a sample that goes from `before` to `now` [m] comes upon the surface from outside; not found: nowhere.

@@ -10,6 +10,9 @@ namespace {
 constexpr double kSpacing = 0.1e-3;     // [m], of samples along the thread at most: less than a wall is thick
 constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands for, either way
 constexpr double kThrough = 50e-6;      // [m], half a wall: as much thread goes in a step at 25 mm/s
+constexpr double kBeside = 0.2e-3;      // [m], of thread on either side of what is deep that comes out with it
+constexpr double kOpposite = 0.3;       // [1], cosine, of a face against the way back
+constexpr double kJustAbove = 1e-6;     // [m], from where one looks
 constexpr double kAhead = 0.1e-3;       // [m], by which a jaw may still be away at the start of a step: 50 mm/s
 constexpr std::array<double, 3> kOnJaw = {0.0, 0.06, 0.15};  // places along a jaw, from its tip
 
@@ -67,12 +70,14 @@ void VesselContact::hold(const VesselWall& wall, const WallState& w, const Touch
     const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
     on_thread.push_back(hold_touch(wall, w, touch, law, at_arc(thread, touch.arc)));
   }
+  n_deep_ = 0;
+  note_deep(wall, w, s, thread);
 }
 
 bool VesselContact::catches(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
                             std::vector<RodTether>& on_thread) const noexcept {
   const int known = s.n;
-  sweep(wall, w, s, tracks, thread, {0.0, kThrough});
+  sweep(wall, w, s, tracks, thread, kThrough);
   for (int k = known; k < s.n && on_thread.size() < on_thread.capacity(); ++k) {
     const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
     on_thread.push_back(hold_touch(wall, w, touch, law, was_at(thread, touch.arc)));
@@ -108,17 +113,20 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
     const RodTether& t = on_thread[index];
     touch.load = std::max(0.0, t.force.dot(touch.normal));
     if (in_tracks.hold(touch.arc) || parted(thread, touch.arc)) continue;
-    const TouchFooting footing = find_footing(wall, w, touch, t, law, at_arc(thread, touch.arc));
+    const Vec3 x = at_arc(thread, touch.arc);
+    const TouchFooting footing = find_footing(wall, w, touch, t, law, x);
     if (footing.off) {
       come_out_[static_cast<std::size_t>(n_come_out_++)] = touch.arc;
       continue;
     }
     lean_touch(wall, w, touch, t, law);
     slide_touch(touch, footing);
+    if (!footing.slides) stay_above(wall, w, touch, x);
     s.touches[static_cast<std::size_t>(kept++)] = touch;
   }
   s.n = kept;
-  sweep(wall, w, s, tracks, thread, {});
+  note_deep(wall, w, s, thread);
+  sweep(wall, w, s, tracks, thread, 0.0);
   n_come_out_ = 0;
 }
 
@@ -126,30 +134,43 @@ void VesselContact::overtake(const VesselWall& wall, const WallState& w, TouchSt
   const double farthest = wall.options().dt * w.v.colwise().norm().maxCoeff();
   if (farthest == 0.0) return;
   before_.leftCols(thread.n) = thread.x.leftCols(thread.n);
-  sweep(wall, w, s, tracks, thread, {farthest, 0.0});
+  for (int k = 0; k < s.n; ++k) {
+    SurfaceTouch& t = s.touches[static_cast<std::size_t>(k)];
+    if (is_deep(wall, w, t, law, at_arc(thread, t.arc))) turn_touch(wall, w, t);
+  }
+  note_deep(wall, w, s, thread);
+  for_free_samples(wall, s, tracks, thread, 2.0 * farthest, [&](double arc, const Vec3&, const Vec3& x) { touch(s, arc, passed(wall, w, x, farthest)); });
 }
 
-/// Samples of the thread on their way from before_ to where it is, or past a wall that has just moved.
-void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, const Search& search) const noexcept {
+/// Samples on their way from before_ to where they are, past a wall that stands; `least` [m], past the surface, that counts.
+void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, double least) const noexcept {
+  for_free_samples(wall, s, tracks, thread, 0.0, [&](double arc, const Vec3& before, const Vec3& now) {
+    const WallCrossing c = meet_surface(wall, w, before, now);
+    if (c.found && (1.0 - c.fraction) * (before - now).dot(c.normal) >= least) touch(s, arc, c);
+  });
+}
+
+/// Has the wall, in its last step, gone over a place x? It was seen from the surface's place that was nearest to it.
+WallCrossing VesselContact::passed(const VesselWall& wall, const WallState& w, const Vec3& x, double farthest) noexcept {
+  const WallCrossing was = wall.nearest_before(w, x, farthest, farthest);
+  if (!was.found || was.fraction < 0.0) return {};
+  return meet_surface(wall, w, wall.on_triangle(w, was.point) + kJustAbove * wall.side_normals(w, was.point).now, x);
+}
+
+template <class Look>
+void VesselContact::for_free_samples(const VesselWall& wall, const TouchState& s, const TrackState& tracks, const RodState& thread, double beside,
+                                     const Look& look) const noexcept {
   const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
   const InTracks in_tracks(tracks, whole);
   double arc = thread.arc_start;
   for (int i = 0; i + 1 < thread.n && s.n < kMostTouches; arc += thread.rest_length[i++]) {
     const int n = thread.alive[i] == 0 ? 1 : static_cast<int>(std::ceil(thread.rest_length[i] / kSpacing));
     if (in_tracks.hold_all(arc, thread.rest_length[i], n)) continue;
-    const Vec3 a = before_.col(i), b = before_.col(i + 1), to_a = thread.x.col(i), to_b = thread.x.col(i + 1), beside = Vec3::Constant(search.reach);
-    if (!wall.near(a.cwiseMin(b).cwiseMin(to_a).cwiseMin(to_b) - beside, a.cwiseMax(b).cwiseMax(to_a).cwiseMax(to_b) + beside)) continue;
-    for (int k = 0; k < n && s.n < kMostTouches; ++k) {
+    const Vec3 a = before_.col(i), b = before_.col(i + 1), to_a = thread.x.col(i), to_b = thread.x.col(i + 1), around = Vec3::Constant(beside);
+    if (!wall.near(a.cwiseMin(b).cwiseMin(to_a).cwiseMin(to_b) - around, a.cwiseMax(b).cwiseMax(to_a).cwiseMax(to_b) + around)) continue;
+    for (int k = 0; k < n; ++k) {
       const double f = static_cast<double>(k) / n, at = InTracks::sample(arc, thread.rest_length[i], k, n);
-      if (in_tracks.hold(at) || spoken_for(s, at)) continue;  // before the wall is searched: it costs most
-      const Vec3 now = (1.0 - f) * to_a + f * to_b;
-      Vec3 before = (1.0 - f) * a + f * b;
-      if (search.reach > 0.0) {
-        const WallCrossing near = wall.nearest(w, now, search.reach);
-        if (!near.found) continue;
-        before = now + wall.options().dt * wall.velocity(w, near.point);
-      }
-      look(wall, w, s, at, before, now, search.least);
+      if (!in_tracks.hold(at) && !spoken_for(s, at)) look(at, (1.0 - f) * a + f * b, (1.0 - f) * to_a + f * to_b);  // asked first: the wall's search costs most
     }
   }
 }
@@ -160,14 +181,25 @@ bool VesselContact::spoken_for(const TouchState& s, double arc) const noexcept {
          near_one_of(std::span(come_out_.data(), static_cast<std::size_t>(n_come_out_)), arc);
 }
 
-void VesselContact::look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now, double least) const noexcept {
-  const WallCrossing c = meet_surface(wall, w, before, now);
-  if (!c.found || (1.0 - c.fraction) * (before - now).dot(c.normal) < least) return;
-  SurfaceTouch touch;
-  touch.arc = arc;
-  touch.at = c.point;
-  touch.normal = c.normal;
-  s.touches[static_cast<std::size_t>(s.n++)] = touch;
+void VesselContact::touch(TouchState& s, double arc, const WallCrossing& c) const noexcept {
+  if (!c.found || s.n == kMostTouches || goes_back(arc, c.normal)) return;
+  SurfaceTouch& t = s.touches[static_cast<std::size_t>(s.n++)];
+  t = {};
+  t.arc = arc;
+  t.at = c.point;
+  t.normal = c.normal;
+}
+
+void VesselContact::note_deep(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread) noexcept {
+  for (int k = 0; k < s.n && static_cast<std::size_t>(n_deep_) < deep_.size(); ++k) {
+    const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
+    if (is_deep(wall, w, touch, law, at_arc(thread, touch.arc))) deep_[static_cast<std::size_t>(n_deep_++)] = {touch.arc, touch.normal};
+  }
+}
+
+/// Would a touch there hold back what is on its way out?
+bool VesselContact::goes_back(double arc, const Vec3& normal) const noexcept {
+  return std::any_of(deep_.begin(), deep_.begin() + n_deep_, [&](const Deep& d) { return std::abs(d.arc - arc) < kBeside && d.way.dot(normal) < -kOpposite; });
 }
 
 double VesselContact::free_way(const VesselWall& wall, const WallState& w, const InstrumentParameters& tool, const Pose& from,

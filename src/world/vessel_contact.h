@@ -4,7 +4,8 @@
 //
 // Thread: a sample (nodes, and places 0.1 mm apart between them) that crosses the surface inwards by its motion relative to the wall is remembered with the place
 // where it crossed and is pushed back out (surface_touch.h). Thread and wall move in turn: first the thread past the wall as it stands, then the wall past the thread.
-// In the wall's turn a sample x was, as the wall's point p next to it sees it, at x + h v(p). Where a track holds the thread nothing is looked for.
+// In the wall's turn a sample has been passed that is no longer seen from the place of the wall that was nearest to it before. Where a track holds the thread nothing is looked for.
+// What has gone far in is drawn back the way it came, and the faces that it meets on its way are not held against it.
 // Jaws: spheres along them that push the faces they touch along their normals and drag them by friction, within the tissue's own step.
 // Neglects: thickness of the thread, rims thinner than 0.1 mm between two samples, jaws beyond 1.2 mm from their tips.
 // Test: vessel_contact_test.
@@ -43,13 +44,15 @@ class VesselContact {
   void feel(const VesselWall& wall, std::vector<Vec3>& force, std::vector<Vec3>& torque) const noexcept;
 
  private:
-  struct Search {
-    double reach = 0.0;        // [m], that the wall has just moved by at most; 0: the thread has, past a wall that stands
-    double least = 0.0;        // [m], past the surface, that counts
-  };
-  void sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, const Search& search) const noexcept;
-  void look(const VesselWall& wall, const WallState& w, TouchState& s, double arc, const Vec3& before, const Vec3& now, double least) const noexcept;
+  /// Each sample of the thread near the wall that no track and no touch has: its arc, where it was [m] and where it is. `beside` [m]: what counts as near.
+  template <class Look>
+  void for_free_samples(const VesselWall& wall, const TouchState& s, const TrackState& tracks, const RodState& thread, double beside, const Look& look) const noexcept;
+  void sweep(const VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread, double least) const noexcept;
+  static WallCrossing passed(const VesselWall& wall, const WallState& w, const Vec3& x, double farthest) noexcept;
+  void touch(TouchState& s, double arc, const WallCrossing& c) const noexcept;
   bool spoken_for(const TouchState& s, double arc) const noexcept;
+  void note_deep(const VesselWall& wall, const WallState& w, const TouchState& s, const RodState& thread) noexcept;
+  bool goes_back(double arc, const Vec3& normal) const noexcept;
   Vec3 was_at(const RodState& thread, double arc) const noexcept;  // [m], at the start of the step
 
   struct Push {
@@ -62,6 +65,12 @@ class VesselContact {
   int n_pushes_ = 0;
   std::array<double, kMostTouches> come_out_{};  // [m], arcs of touches that end in this step: on their way out they pass the wall from within
   int n_come_out_ = 0;
+  struct Deep {
+    double arc;                  // [m]
+    Vec3 way;                    // unit, back out
+  };
+  std::array<Deep, 3 * kMostTouches> deep_;
+  int n_deep_ = 0;             // at the start of the step, after the thread's turn and after the wall's: what comes out in it has been in deep
   Points before_;              // [m], nodes at the start of the step
   int first_ = 0;              // of its tethers
 };

@@ -19,7 +19,7 @@ struct SurfaceTouch {
   Vec3 push = Vec3::Zero();    // [N], of the wall on a needle, in the last step
   double firm = 0.0;           // [N/m], by which that changes as a needle in hand moves
 };
-inline constexpr int kMostTouches = 96;
+inline constexpr int kMostTouches = 256;
 
 struct TouchState {
   std::int32_t n = 0;
