@@ -55,13 +55,14 @@ TouchFooting find_footing(const VesselWall& wall, const WallState& w, const Surf
   return f;
 }
 
-void stay_above(const VesselWall& wall, const WallState& w, SurfaceTouch& touch, const Vec3& x) noexcept {
+bool stay_above(const VesselWall& wall, const WallState& w, SurfaceTouch& touch, const Vec3& x) noexcept {
   const Vec3 high = x + kAbove * touch.normal;
   for (WallCrossing c = wall.crossing(w, x, high); c.found; c = wall.crossing(w, x, high, c.fraction + 1e-9)) {
-    if (c.normal.dot(touch.normal) < kFacing) continue;
+    if (c.normal.dot(touch.normal) <= 0.0) continue;
     touch.at = c.point;
-    return;
+    return true;
   }
+  return false;
 }
 
 void turn_touch(const VesselWall& wall, const WallState& w, SurfaceTouch& touch) noexcept {

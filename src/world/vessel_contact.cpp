@@ -115,13 +115,13 @@ void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, 
     if (in_tracks.hold(touch.arc) || parted(thread, touch.arc)) continue;
     const Vec3 x = at_arc(thread, touch.arc);
     const TouchFooting footing = find_footing(wall, w, touch, t, law, x);
-    if (footing.off) {
+    const bool above = footing.slides || stay_above(wall, w, touch, x);
+    if (footing.off || (footing.deep && !above)) {
       come_out_[static_cast<std::size_t>(n_come_out_++)] = touch.arc;
       continue;
     }
     lean_touch(wall, w, touch, t, law);
     slide_touch(touch, footing);
-    if (!footing.slides) stay_above(wall, w, touch, x);
     s.touches[static_cast<std::size_t>(kept++)] = touch;
   }
   s.n = kept;
