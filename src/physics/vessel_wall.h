@@ -117,10 +117,11 @@ class VesselWall {
   WallCrossing nearest(const WallState& state, const Vec3& q, double reach) const noexcept;
   /// The same of the surface as it was before the last step, at x - h v; refit() has been told where it is now. `farthest` [m]: what it has moved by at most.
   WallCrossing nearest_before(const WallState& state, const Vec3& q, double reach, double farthest) const noexcept;
+  Vec3 triangle_normal(const WallState& state, int triangle) const noexcept;  // unit, outward
   struct SideNormals {
     Vec3 before, now;          // unit, outward
   };
-  /// Of the triangle that a point of the surface lies on, before the last step and after it.
+  /// How the surface has turned at a point of it in the last step: normals of the element's side there, of one of them on an edge.
   SideNormals side_normals(const WallState& state, const WallPoint& at) const noexcept;
   /// Triangles that a ball about q of this radius meets or nearly does, each with the place that is nearest to q, the nearest first; only that if q is inside
   /// the tissue. Returns how many, at most `room`.

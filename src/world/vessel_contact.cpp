@@ -154,7 +154,7 @@ void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState
 WallCrossing VesselContact::passed(const VesselWall& wall, const WallState& w, const Vec3& x, double farthest) noexcept {
   const WallCrossing was = wall.nearest_before(w, x, farthest, farthest);
   if (!was.found || was.fraction < 0.0) return {};
-  return meet_surface(wall, w, wall.on_triangle(w, was.point) + kJustAbove * wall.side_normals(w, was.point).now, x);
+  return meet_surface(wall, w, wall.on_triangle(w, was.point) + kJustAbove * wall.triangle_normal(w, was.triangle), x);
 }
 
 template <class Look>

@@ -85,6 +85,61 @@ TEST(VesselWallSurface, NearestTellsInsideFromOutside) {
   EXPECT_FALSE(wall.nearest(s, Vec3(0.6e-3, 0, 1.5e-3), 1e-4).found);
 }
 
+/// A search that ends before it has seen all triangles in reach misses the nearest of them.
+TEST(VesselWallSurface, TheNearestIsFoundAmongAllThatAreInReach) {
+  VesselWall wall = plain();
+  const WallState s = wall.first_state();
+  wall.refit(s);
+  for (int k = 0; k < 40; ++k) {
+    const double angle = 0.157 * k;
+    const Vec3 q(0.5e-3 * std::cos(angle), 0.5e-3 * std::sin(angle), 0.1e-3 + 70e-6 * k);
+    const WallCrossing close = wall.nearest(s, q, 0.1e-3), far = wall.nearest(s, q, 5e-3);
+    ASSERT_TRUE(close.found);
+    EXPECT_NEAR((wall.position(s, far.point) - wall.position(s, close.point)).norm(), 0.0, 1e-12);
+    EXPECT_NEAR(far.fraction, close.fraction, 1e-12);
+  }
+}
+
+/// Turned by 40 degrees and gone 1 mm on in one step.
+WallState flung(const VesselWall& wall, const WallState& from) {
+  WallState to = from;
+  const Quat turn(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
+  for (int i = 0; i < wall.mesh().n_nodes(); ++i) to.x.col(i) = turn * Vec3(from.x.col(i)) + Vec3(0.6e-3, -0.8e-3, 0);
+  to.v = (to.x - from.x) / wall.options().dt;
+  return to;
+}
+
+TEST(VesselWallSurface, WhatWasNearestBeforeAStepIsToldAfterIt) {
+  VesselWall wall = plain();
+  const WallState before = wall.first_state(), now = flung(wall, before);
+  const double farthest = wall.options().dt * now.v.colwise().norm().maxCoeff();
+  ASSERT_GT(farthest, 1e-3);
+  for (int k = 0; k < 40; ++k) {
+    const double angle = 0.157 * k, radius = 0.44e-3 + 2e-6 * k;
+    const Vec3 q(radius * std::cos(angle), radius * std::sin(angle), 0.1e-3 + 70e-6 * k);
+    wall.refit(before);
+    const WallCrossing was = wall.nearest(before, q, 0.1e-3);
+    wall.refit(now);
+    const WallCrossing told = wall.nearest_before(now, q, 0.1e-3, farthest);
+    ASSERT_TRUE(was.found && told.found);
+    EXPECT_NEAR((wall.position(before, told.point) - wall.position(before, was.point)).norm(), 0.0, 1e-12) << "of two that meet there either";
+    EXPECT_NEAR(told.fraction, was.fraction, 1e-12);
+    EXPECT_NEAR((told.away - was.away).norm(), 0.0, 1e-6);
+  }
+}
+
+TEST(VesselWallSurface, NormalsOfASideTurnWithIt) {
+  VesselWall wall = plain();
+  const WallState before = wall.first_state(), now = flung(wall, before);
+  wall.refit(before);
+  const WallCrossing c = wall.crossing(before, Vec3(0.4e-3, 0.48e-3, 1.43e-3), Vec3(0, 0, 1.43e-3));
+  ASSERT_TRUE(c.found);
+  EXPECT_NEAR((wall.triangle_normal(before, c.triangle) - c.normal).norm(), 0.0, 1e-12);
+  const VesselWall::SideNormals side = wall.side_normals(now, c.point);
+  EXPECT_NEAR((side.before - c.normal).norm(), 0.0, 1e-9);
+  EXPECT_NEAR((side.now - Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized())) * c.normal).norm(), 0.0, 1e-9);
+}
+
 TEST(VesselWallSurface, LocateInvertsPosition) {
   VesselWall wall = plain();
   WallState s = wall.first_state();

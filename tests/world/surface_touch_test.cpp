@@ -90,6 +90,43 @@ TEST(SurfaceTouch, WhatHasSlidThroughTheOtherSideOfAFoldIsNotOut) {
   EXPECT_GT(v.wall.on_triangle(v.w, touch.at).x(), 0.0) << "from now on it is pushed out of the other side";
 }
 
+/// Drawn over the card's rim and down beside it: below the plane of its place, and in nobody's way.
+TEST(SurfaceTouch, WhatHasGoneRoundARimIsFree) {
+  const Valley v(0.0);
+  SurfaceTouch touch;
+  touch.at = v.wall.nearest(v.w, Vec3(0.5e-3, -1e-6, 0.075e-3), 1e-4).point;  // the cut edge is at y = 0
+  touch.normal = Vec3::UnitZ();
+  const auto stands = [&](double beyond, double deep) { return find_footing(v.wall, v.w, touch, RodTether(), TouchLaw(), Vec3(0.5e-3, beyond, 0.075e-3 - deep)); };
+  EXPECT_TRUE(stands(10e-6, 30e-6).off) << "beside the edge";
+  EXPECT_TRUE(stands(0.3e-3, 30e-6).off) << "far from anything";
+  EXPECT_FALSE(stands(-10e-6, 30e-6).off) << "within";
+  EXPECT_FALSE(stands(10e-6, 60e-6).off) << "deep: what drew it there may be the far side";
+}
+
+/// The place of what went through a card goes along over it, on the side that it came from, where the far side is nearer; it turns with the card.
+TEST(SurfaceTouch, WhatIsDeepIsDrawnBackTheWayItCame) {
+  const Valley v(0.0);
+  SurfaceTouch touch;
+  touch.at = v.wall.nearest(v.w, Vec3(-0.4e-3, -2e-3, 0.075e-3), 1e-4).point;
+  touch.normal = Vec3::UnitZ();
+  const Vec3 x(0.6e-3, -1.5e-3, -0.2e-3);  // 0.125 mm below the far side
+  const TouchFooting f = find_footing(v.wall, v.w, touch, RodTether(), TouchLaw(), x);
+  EXPECT_TRUE(f.deep);
+  EXPECT_FALSE(f.slides || f.off);
+  ASSERT_TRUE(stay_above(v.wall, v.w, touch, x));
+  EXPECT_NEAR((v.wall.on_triangle(v.w, touch.at) - Vec3(0.6e-3, -1.5e-3, 0.075e-3)).norm(), 0.0, 1e-9);
+  EXPECT_FALSE(stay_above(v.wall, v.w, touch, Vec3(0.6e-3, 0.5e-3, -0.2e-3))) << "beyond the edge";
+  EXPECT_FALSE(stay_above(v.wall, v.w, touch, Vec3(0.6e-3, -1.5e-3, -2.2e-3))) << "too far below";
+
+  WallState turned = v.w;
+  const Quat turn(Eigen::AngleAxisd(0.5, Vec3::UnitY()));
+  for (int i = 0; i < v.wall.mesh().n_nodes(); ++i) turned.x.col(i) = turn * Vec3(v.w.x.col(i));
+  turned.v = (turned.x - v.w.x) / v.wall.options().dt;
+  touch.normal = Vec3(0.3, 0.0, 1.0).normalized();
+  turn_touch(v.wall, turned, touch);
+  EXPECT_NEAR((touch.normal - turn * Vec3(0.3, 0.0, 1.0).normalized()).norm(), 0.0, 1e-9);
+}
+
 /// Far in, the force is that of kDeepest, and leads all the way out.
 TEST(SurfaceTouch, WhatIsFarInIsDrawnAllTheWayOut) {
   const Valley v(0.0);

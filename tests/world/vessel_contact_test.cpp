@@ -234,6 +234,71 @@ TEST(VesselContact, AFastWallDoesNotTunnel) {
   EXPECT_GT(edge.touches[0].normal.z(), 0.9) << "on the cut edge";
 }
 
+/// A wall that turns as it is flung over thread: what is nearest afterwards came from elsewhere, and from behind it.
+TEST(VesselContact, AWallThatTurnsAsItGoesOverThreadIsSeen) {
+  VesselWall wall = tube();
+  const WallState first = wall.first_state();
+  WallState w = first;
+  const RodState thread = across(Vec3(0, kRadius + 20e-6, 1.5e-3), 31, 0.2e-3);
+  const Quat turn(Eigen::AngleAxisd(0.6, Vec3::UnitX()));
+  for (int i = 0; i < wall.mesh().n_nodes(); ++i) w.x.col(i) = turn * Vec3(first.x.col(i) - Vec3(0, 0, 1.5e-3)) + Vec3(0, 0.8e-3, 1.5e-3);
+  w.v = (w.x - first.x) / wall.options().dt;
+  wall.refit(w);
+  VesselContact contact(40);
+  TouchState touches;
+  contact.overtake(wall, w, touches, {}, thread);
+  ASSERT_GT(touches.n, 6);
+  for (int k = 0; k < touches.n; ++k) {
+    const SurfaceTouch& t = touches.touches[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(wall.depth_at(t.at), 0.0, 1e-9) << "on the outer surface";
+    EXPECT_GT((turn.inverse() * t.normal).y(), 0.0) << "on the side that it was on";
+  }
+}
+
+/// Thread in the lumen that came in from outside, and is on its way back: the inner surface does not hold it, neither while it is deep nor in the step in which it comes out.
+TEST(VesselContact, WhatComesBackOutIsNotHeldOnItsWay) {
+  VesselWall wall = tube();
+  const WallState w = wall.first_state();
+  wall.refit(w);
+  const WallCrossing top = wall.crossing(w, Vec3(0, 2.0 * kRadius, 1.5e-3), Vec3(0, 0, 1.5e-3));
+  const auto back = [&](double to, bool known) {
+    RodState thread = across(Vec3(0, 0.3e-3, 1.5e-3), 3, 0.15e-3);
+    TouchState touches;
+    if (known) {
+      touches.touches[0] = {0.16e-3, top.point, top.normal, 0.0, Vec3::Zero(), 0.0};
+      touches.n = 1;
+    }
+    VesselContact contact(8);
+    std::vector<RodTether> tethers;
+    tethers.reserve(8);
+    contact.hold(wall, w, touches, thread, tethers);
+    thread.x.row(1).array() += to - 0.3e-3;
+    contact.follow(wall, w, touches, {}, thread, tethers);
+    return touches.n;
+  };
+  EXPECT_GT(back(0.38e-3, false), 1) << "what has always been in the lumen is held";
+  EXPECT_EQ(back(0.38e-3, true), 1) << "deep";
+  EXPECT_EQ(back(0.47e-3, true), 0) << "out";
+}
+
+/// A touch that has nothing above it is of a strand that has gone round; kept, it would keep others away.
+TEST(VesselContact, ATouchWithNothingAboveEnds) {
+  VesselWall wall = tube();
+  const WallState w = wall.first_state();
+  wall.refit(w);
+  const WallCrossing top = wall.crossing(w, Vec3(0, 2.0 * kRadius, 1.5e-3), Vec3(0, 0, 1.5e-3));
+  RodState thread = across(Vec3(0, 0.3e-3, 4e-3), 3, 0.15e-3);  // a millimetre beyond the cut edge
+  TouchState touches;
+  touches.touches[0] = {0.15e-3, top.point, top.normal, 0.0, Vec3::Zero(), 0.0};
+  touches.n = 1;
+  VesselContact contact(8);
+  std::vector<RodTether> tethers;
+  tethers.reserve(8);
+  contact.hold(wall, w, touches, thread, tethers);
+  contact.follow(wall, w, touches, {}, thread, tethers);
+  EXPECT_EQ(touches.n, 0);
+}
+
 /// A thread that leads from the lumen over the cut edge, in edges of 1.2 mm, drawn or passed against the rim.
 TEST(VesselContact, ThreadHooksOverARimBetweenItsNodes) {
   VesselWall wall = tube();
