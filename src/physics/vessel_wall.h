@@ -117,7 +117,6 @@ class VesselWall {
   WallCrossing nearest(const WallState& state, const Vec3& q, double reach) const noexcept;
   /// The same of the surface as it was before the last step, at x - h v; refit() has been told where it is now. `farthest` [m]: what it has moved by at most.
   WallCrossing nearest_before(const WallState& state, const Vec3& q, double reach, double farthest) const noexcept;
-  Vec3 triangle_normal(const WallState& state, int triangle) const noexcept;  // unit, outward
   struct SideNormals {
     Vec3 before, now;          // unit, outward
   };

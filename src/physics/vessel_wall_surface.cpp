@@ -70,10 +70,6 @@ Vec3 VesselWall::on_triangle(const WallState& state, const WallPoint& at) const 
   return t.weights[0] * state.x.col(t.nodes[0]) + t.weights[1] * state.x.col(t.nodes[1]) + t.weights[2] * state.x.col(t.nodes[2]);
 }
 
-Vec3 VesselWall::triangle_normal(const WallState& state, int triangle) const noexcept {
-  return normal_of(triangles()[static_cast<std::size_t>(triangle)], [&](int i) -> Vec3 { return state.x.col(i); });
-}
-
 VesselWall::SideNormals VesselWall::side_normals(const WallState& state, const WallPoint& at) const noexcept {
   const Triangle t = triangle_of(at).nodes;
   return {normal_of(t, [&](int i) -> Vec3 { return was(state, i); }), normal_of(t, [&](int i) -> Vec3 { return state.x.col(i); })};

@@ -11,7 +11,7 @@ constexpr double kLightest = 5e-6;   // [N], half of what the wall's step leaves
 constexpr double kJustAbove = 1e-6;  // [m], from where one looks
 constexpr double kAlong = 0.1e-3;    // [m], by which a place goes along in a step at most
 constexpr double kFacing = 0.3;      // [1], cosine: of sides that look the same way
-constexpr double kAbove = 2e-3;      // [m], how far above a strand its place is looked for
+constexpr double kAbove = 1e-3;      // [m], how far above a strand its place is looked for
 
 /// A strand that stands above the plane of its place may have slid into tissue that rises there: it is out only if one sees it from the place.
 void look_back(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x, TouchFooting& f) noexcept {
@@ -51,7 +51,7 @@ TouchFooting find_footing(const VesselWall& wall, const WallState& w, const Surf
   f.slides = faces && !f.deep;
   f.off = height >= 0.0 ? !(f.slides && f.near.fraction < law.radius) : round_a_rim && !f.slides && !f.deep;
   f.depth = f.slides ? law.radius - f.near.fraction : -height;
-  if (f.off && height >= 0.0) look_back(wall, w, touch, law, x, f);
+  if (f.off) look_back(wall, w, touch, law, x, f);
   return f;
 }
 

@@ -35,7 +35,7 @@ void lean_touch(VesselWall& wall, const WallState& w, const SurfaceTouch& touch,
 /// Has the strand at x gone so far past its place that the surface nearest to it may be another one? It is drawn back the way it came.
 bool is_deep(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x) noexcept;
 /// The place of one that cannot slide goes along over it: where its way out, along the normal, leaves the tissue on the side that it came from. False: nowhere
-/// within two millimetres, so that it is not behind anything.
+/// within a millimetre, so that it is not behind anything.
 bool stay_above(const VesselWall& wall, const WallState& w, SurfaceTouch& touch, const Vec3& x) noexcept;
 /// That way turns with the wall, after the wall's step.
 void turn_touch(const VesselWall& wall, const WallState& w, SurfaceTouch& touch) noexcept;

@@ -150,11 +150,12 @@ void VesselContact::sweep(const VesselWall& wall, const WallState& w, TouchState
   });
 }
 
-/// Has the wall, in its last step, gone over a place x? It was seen from the surface's place that was nearest to it.
+/// Has the wall, in its last step, gone over a place x? It was seen from the surface's place that was nearest to it; on an edge that is a ridge,
+/// and the normal of any side there leads out.
 WallCrossing VesselContact::passed(const VesselWall& wall, const WallState& w, const Vec3& x, double farthest) noexcept {
   const WallCrossing was = wall.nearest_before(w, x, farthest, farthest);
   if (!was.found || was.fraction < 0.0) return {};
-  return meet_surface(wall, w, wall.on_triangle(w, was.point) + kJustAbove * wall.triangle_normal(w, was.triangle), x);
+  return meet_surface(wall, w, wall.on_triangle(w, was.point) + kJustAbove * wall.side_normals(w, was.point).now, x);
 }
 
 template <class Look>

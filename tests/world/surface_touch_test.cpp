@@ -97,7 +97,8 @@ TEST(SurfaceTouch, WhatHasGoneRoundARimIsFree) {
   touch.at = v.wall.nearest(v.w, Vec3(0.5e-3, -1e-6, 0.075e-3), 1e-4).point;  // the cut edge is at y = 0
   touch.normal = Vec3::UnitZ();
   const auto stands = [&](double beyond, double deep) { return find_footing(v.wall, v.w, touch, RodTether(), TouchLaw(), Vec3(0.5e-3, beyond, 0.075e-3 - deep)); };
-  EXPECT_TRUE(stands(10e-6, 30e-6).off) << "beside the edge";
+  EXPECT_TRUE(stands(50e-6, 30e-6).off) << "beside the edge, and seen from its place";
+  EXPECT_FALSE(stands(10e-6, 30e-6).off) << "behind the rim";
   EXPECT_TRUE(stands(0.3e-3, 30e-6).off) << "far from anything";
   EXPECT_FALSE(stands(-10e-6, 30e-6).off) << "within";
   EXPECT_FALSE(stands(10e-6, 60e-6).off) << "deep: what drew it there may be the far side";
@@ -116,7 +117,7 @@ TEST(SurfaceTouch, WhatIsDeepIsDrawnBackTheWayItCame) {
   ASSERT_TRUE(stay_above(v.wall, v.w, touch, x));
   EXPECT_NEAR((v.wall.on_triangle(v.w, touch.at) - Vec3(0.6e-3, -1.5e-3, 0.075e-3)).norm(), 0.0, 1e-9);
   EXPECT_FALSE(stay_above(v.wall, v.w, touch, Vec3(0.6e-3, 0.5e-3, -0.2e-3))) << "beyond the edge";
-  EXPECT_FALSE(stay_above(v.wall, v.w, touch, Vec3(0.6e-3, -1.5e-3, -2.2e-3))) << "too far below";
+  EXPECT_FALSE(stay_above(v.wall, v.w, touch, Vec3(0.6e-3, -1.5e-3, -1.2e-3))) << "too far below";
 
   WallState turned = v.w;
   const Quat turn(Eigen::AngleAxisd(0.5, Vec3::UnitY()));
