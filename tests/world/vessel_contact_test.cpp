@@ -281,6 +281,25 @@ TEST(VesselContact, WhatComesBackOutIsNotHeldOnItsWay) {
   EXPECT_EQ(back(0.47e-3, true), 0) << "out";
 }
 
+TEST(VesselContact, TheWayBackTurnsWithTheWall) {
+  VesselWall wall = tube();
+  const WallState first = wall.first_state();
+  wall.refit(first);
+  const WallCrossing top = wall.crossing(first, Vec3(1e-6, 2.0 * kRadius, 1.5e-3), Vec3(1e-6, 0, 1.5e-3));
+  const RodState thread = across(Vec3(0, 0.3e-3, 1.5e-3), 3, 0.15e-3);
+  TouchState touches;
+  touches.touches[0] = {0.15e-3, top.point, top.normal, 0.0, Vec3::Zero(), 0.0};
+  touches.n = 1;
+  WallState w = first;
+  const Quat turn(Eigen::AngleAxisd(0.3, Vec3::UnitX()));
+  for (int i = 0; i < wall.mesh().n_nodes(); ++i) w.x.col(i) = turn * Vec3(first.x.col(i) - Vec3(0, 0, 1.5e-3)) + Vec3(0, 0, 1.5e-3);
+  w.v = (w.x - first.x) / wall.options().dt;
+  wall.refit(w);
+  VesselContact contact(8);
+  contact.overtake(wall, w, touches, {}, thread);
+  EXPECT_NEAR((touches.touches[0].normal - turn * top.normal).norm(), 0.0, 1e-6);
+}
+
 /// A touch that has nothing above it is of a strand that has gone round; kept, it would keep others away.
 TEST(VesselContact, ATouchWithNothingAboveEnds) {
   VesselWall wall = tube();
