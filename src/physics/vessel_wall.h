@@ -111,8 +111,8 @@ class VesselWall {
   void refit(const WallState& state) noexcept;
   /// May some of the surface lie in this box [m]?
   bool near(const Vec3& low, const Vec3& high) const noexcept;
-  /// First crossing of the segment from a to b [m] with the surface, after the fraction `from`. Either side counts.
-  WallCrossing crossing(const WallState& state, const Vec3& a, const Vec3& b, double from = 0.0) const noexcept;
+  /// First crossing of the segment from a to b [m] with the surface, after the fraction `from` and up to `until`. Either side counts.
+  WallCrossing crossing(const WallState& state, const Vec3& a, const Vec3& b, double from = 0.0, double until = 1.0) const noexcept;
   /// Material point of the surface nearest to q within `reach`; fraction is then the distance [m], negative inside the tissue.
   WallCrossing nearest(const WallState& state, const Vec3& q, double reach) const noexcept;
   /// The same of the surface as it was before the last step, at x - h v; refit() has been told where it is now. `farthest` [m]: what it has moved by at most.

@@ -122,10 +122,11 @@ bool VesselWall::near(const Vec3& low, const Vec3& high) const noexcept {
   return tree_.overlaps({low, high});
 }
 
-WallCrossing VesselWall::crossing(const WallState& state, const Vec3& a, const Vec3& b, double from) const noexcept {
+WallCrossing VesselWall::crossing(const WallState& state, const Vec3& a, const Vec3& b, double from, double until) const noexcept {
   WallCrossing best;
   found_.clear();
-  tree_.overlaps({a.cwiseMin(b), a.cwiseMax(b)}, found_);
+  const Vec3 end = until < 1.0 ? Vec3(a + until * (b - a)) : b;
+  tree_.overlaps({a.cwiseMin(end), a.cwiseMax(end)}, found_);
   int triangle = -1;
   Vec3 weights = Vec3::Zero();
   for (const int k : found_) {
@@ -134,7 +135,7 @@ WallCrossing VesselWall::crossing(const WallState& state, const Vec3& a, const V
     double fraction = 0.0;
     Vec3 w;
     if (!meets(a, b - a, state.x.col(t[0]), state.x.col(t[1]), state.x.col(t[2]), fraction, w)) continue;
-    if (fraction < from || (best.found && fraction >= best.fraction)) continue;
+    if (fraction < from || fraction > until || (best.found && fraction >= best.fraction)) continue;
     best.found = true;
     best.fraction = fraction;
     triangle = k;

@@ -12,6 +12,7 @@ constexpr double kJustAbove = 1e-6;  // [m], from where one looks
 constexpr double kAlong = 0.1e-3;    // [m], by which a place goes along in a step at most
 constexpr double kFacing = 0.3;      // [1], cosine: of sides that look the same way
 constexpr double kAbove = 1e-3;      // [m], how far above a strand its place is looked for
+constexpr double kCloseBy = 0.15;    // [1], of that, where it mostly is: the search costs as much as the box it looks in
 
 /// A strand that stands above the plane of its place may have slid into tissue that rises there: it is out only if one sees it from the place.
 void look_back(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x, TouchFooting& f) noexcept {
@@ -57,10 +58,12 @@ TouchFooting find_footing(const VesselWall& wall, const WallState& w, const Surf
 
 bool stay_above(const VesselWall& wall, const WallState& w, SurfaceTouch& touch, const Vec3& x) noexcept {
   const Vec3 high = x + kAbove * touch.normal;
-  for (WallCrossing c = wall.crossing(w, x, high); c.found; c = wall.crossing(w, x, high, c.fraction + 1e-9)) {
-    if (c.normal.dot(touch.normal) <= 0.0) continue;
-    touch.at = c.point;
-    return true;
+  for (const double until : {kCloseBy, 1.0}) {
+    for (WallCrossing c = wall.crossing(w, x, high, 0.0, until); c.found; c = wall.crossing(w, x, high, c.fraction + 1e-9, until)) {
+      if (c.normal.dot(touch.normal) <= 0.0) continue;
+      touch.at = c.point;
+      return true;
+    }
   }
   return false;
 }
