@@ -18,6 +18,15 @@ constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind 
 
 double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
 
+/// Unit, of a strand at a place along it: an edge's own in its middle, between those of both edges at a node. A ring over which a bend is drawn sees it turn, not leap.
+Vec3 direction_at(const RodState& t, int edge, double f) noexcept {
+  const auto of = [&](int i) -> Vec3 { return (t.x.col(i + 1) - t.x.col(i)).normalized(); };
+  const int beyond = f < 0.5 ? edge - 1 : edge + 1;
+  if (beyond < 0 || beyond + 1 >= t.n || t.alive[beyond] == 0 || t.alive[edge] == 0) return of(edge);
+  const double share = std::abs(f - 0.5);
+  return ((1.0 - share) * of(edge) + share * of(beyond)).normalized();
+}
+
 }  // namespace
 
 KnotHold knot_hold(const TrackMaterial& m, double give) noexcept {
@@ -96,7 +105,7 @@ void NeedleTracks::hold(const VesselWall& wall, const WallState& w, const TrackS
         const auto [edge, f] = locate_arc(*thread, whole + knot.strand);
         const Vec3 a = thread->x.col(edge), b = thread->x.col(edge + 1);
         uses_.push_back({i, k, static_cast<int>(on_thread.size()), false});
-        on_thread.push_back(tether_of(wall, w, knot, whole + knot.strand, (b - a).normalized(), (1.0 - f) * a + f * b, material_.thread_share));
+        on_thread.push_back(tether_of(wall, w, knot, whole + knot.strand, direction_at(*thread, edge, f), (1.0 - f) * a + f * b, material_.thread_share));
       }
     }
   }

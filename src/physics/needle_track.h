@@ -9,6 +9,8 @@
 //   Puncture  Layer by layer. The point rests on a layer until the normal part of its force reaches the layer's threshold, so that
 //             along the needle the force is F0 / sin(angle to the surface); below the least angle the point slides.
 //   Insertion  F = F_cut + sum over the length inside (f + c v): linear in depth (Okamura, Simone & O'Leary, IEEE TBME 51:1707, 2004).
+//   Strand    runs through a knot the way its edge does in the edge's middle and turns between two of them over the node: as straight edges a bend would turn a
+//             knot's friction and hold by its whole angle when the node is drawn through.
 //   Bends     Each knot adds mu times its lateral force: summed over a bend this is the capstan.
 //   Sawing    The hole's radius grows by wear x lateral force x length drawn through (Archard).
 //   Tearing   A track bears at most tear x bite (distance of its knot nearest to the cut edge); beyond that all of it moves through the

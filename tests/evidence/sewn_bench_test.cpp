@@ -40,7 +40,7 @@ struct Overtightened {
     const TrackState& tracks = world->state().tissue.tracks;
     const RodState& t = world->state().thread;
     const double whole = t.arc_start + t.rest_length.head(t.n - 1).sum();
-    return at_arc(t, which == 0 ? whole + tracks.tracks[0].knots[0].strand - 2.5e-3 : whole + tracks.tracks[1].knots[2].strand + 1.5e-3);
+    return at_arc(t, which == 0 ? whole + tracks.tracks[0].knots[0].strand - 2.5e-3 : whole + tracks.tracks[1].knots[2].strand + 2e-3);
   }
 
   void run() {
@@ -51,7 +51,7 @@ struct Overtightened {
       for (std::size_t i = 0; i < 2; ++i) {
         ToolInput& t = in.tools[i];
         const Vec3 handle = 0.8 * out + Vec3(0.0, i == 0 ? -0.4 : 0.4, 0.5);
-        if (k < 300) at[i] = strand(i) - 0.6e-3 * handle.normalized();
+        if (k < 300) at[i] = strand(i) - 0.45e-3 * handle.normalized();
         t.valid = true;
         t.X_WD.q = facing(handle, Vec3::UnitY());
         t.X_WD.p = at[i] + 15e-6 * std::max(0, 300 - k) * handle.normalized() + 4e-6 * std::max(0, k - 450) * out;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "physics/track_rig.h"
@@ -328,6 +329,62 @@ TEST(NeedleTrack, NodeRuleOfTheSeedGoesInStairsTheTrackDoesNot) {
 }
 
 /// A strand drawn through one point of a soft tube takes the wall along as far as its friction can hold it, and then slides: the wall does not swing.
+/// A thread with a corner, held by one knot of a card.
+struct CornerInTrack {
+  CornerInTrack() : wall(make_card({}), {{"card", 0.5e-3, WallLaw::hooke(1e6, 0.3)}}, {}), tracks(plain_track(5e-3, 1e-3, 5.0), {}, wall), w(wall.first_state()) {
+    Points x(3, 5);
+    for (int i = 0; i < 5; ++i) x.col(i) = i <= 2 ? Vec3(i * kEdge, 0.0, 0.0) : Vec3(2.0 * kEdge, (i - 2) * kEdge, 0.0);
+    thread = RodState::from_nodes(x, 5);
+    on_thread.reserve(1);
+    s.n = 1;
+    s.tracks[0].n = 1;
+  }
+  Vec3 along(double arc) {
+    s.tracks[0].knots[0].strand = arc - 4.0 * kEdge;
+    on_thread.clear();
+    tracks.hold(wall, w, s, {}, &thread, on_needle, on_thread);
+    return on_thread.at(0).along;
+  }
+
+  static constexpr double kEdge = 0.1e-3;
+  VesselWall wall;
+  NeedleTracks tracks;
+  WallState w;
+  RodState thread;
+  TrackState s;
+  std::vector<RodTether> on_needle, on_thread;
+};
+
+TEST(NeedleTrack, RingSeesAStrandTurnRoundItsCornersNotLeap) {
+  CornerInTrack c;
+  const double h = CornerInTrack::kEdge;
+  EXPECT_TRUE(c.along(1.5 * h).isApprox(Vec3::UnitX(), 1e-9)) << "in the middle of an edge it runs as the edge does";
+  EXPECT_TRUE(c.along(2.5 * h).isApprox(Vec3::UnitY(), 1e-9));
+  EXPECT_TRUE(c.along(2.0 * h).isApprox(Vec3(1.0, 1.0, 0.0).normalized(), 1e-6));
+  double most = 0.0, turned = 0.0;
+  Vec3 before = c.along(1.4 * h);
+  for (double arc = 1.41 * h; arc < 2.6 * h; arc += 0.01 * h) {
+    const Vec3 now = c.along(arc);
+    EXPECT_NEAR(now.norm(), 1.0, 1e-12);
+    const double angle = std::acos(std::min(1.0, now.dot(before)));
+    most = std::max(most, angle);
+    turned += angle;
+    before = now;
+  }
+  EXPECT_NEAR(turned, 0.5 * std::numbers::pi, 1e-3) << "one way all along";
+  EXPECT_LT(most, 0.03) << "[rad], in 1 um";
+}
+
+TEST(NeedleTrack, RingAtAnEndOrACutSeesTheEdgeItIsOn) {
+  CornerInTrack c;
+  const double h = CornerInTrack::kEdge;
+  EXPECT_TRUE(c.along(0.1 * h).isApprox(Vec3::UnitX(), 1e-9));
+  EXPECT_TRUE(c.along(3.9 * h).isApprox(Vec3::UnitY(), 1e-9));
+  c.thread.alive[2] = 0;
+  EXPECT_TRUE(c.along(1.9 * h).isApprox(Vec3::UnitX(), 1e-9));
+  EXPECT_TRUE(c.along(2.1 * h).isApprox(Vec3::UnitY(), 1e-9));
+}
+
 TEST(NeedleTrack, FrictionDragsASoftWallWithoutSwinging) {
   TubeShape shape;
   shape.around = 12;
