@@ -248,8 +248,8 @@ def knot_choices(random_, k):
     """Before the ends of the last stitch are cut, the clamp comes as near as before each."""
     if k < len(HINTS): yield {name: value for name, value in HINTS[k].items() if name not in BITES}
     lasts = ((.8, .45) if STITCHES == 6 else (.18, .3, .45)) if k + 1 == STITCHES else (.18,)
-    yield from (dict(slide=slide, let_go=let_go, first=first, firm=30, cut=cut, last=last) for last in lasts for slide in SLIDES for cut in (1.7, 1.9)  # ends are drawn in by up to 1.3 mm while the clamp comes nearer
-                for first in (10, 9) for let_go in ((0, -.3, -.45), (0, -.15, -.6), (0, -.5, -.3)))
+    yield from (dict(slide=slide, let_go=let_go, first=first, firm=30, cut=cut, last=last) for last in lasts for cut in (1.7, 1.9)  # ends are drawn in by up to 1.3 mm while the clamp comes nearer
+                for first in (10, 9) for let_go in ((0, -.3, -.45), (0, -.15, -.6), (0, -.5, -.3)) for slide in SLIDES)
     while True:
         yield dict(let_go=(0, round(random_.uniform(-.6, 0), 2), round(random_.uniform(-.8, 0), 2)), slide=round(random_.uniform(.7, 1.5) * SLIDES[0], 2), first=random_.choice([9, 10, 11]), firm=random_.choice([30, 45]), cut=random_.choice([1.5, 1.7, 1.9]),
                    last=random_.choice(lasts))
