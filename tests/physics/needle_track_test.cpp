@@ -338,6 +338,7 @@ struct CornerInTrack {
     on_thread.reserve(1);
     s.n = 1;
     s.tracks[0].n = 1;
+    s.tracks[0].knots[0].at.element = 0;
   }
   Vec3 along(double arc) {
     s.tracks[0].knots[0].strand = arc - 4.0 * kEdge;
