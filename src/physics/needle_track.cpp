@@ -18,6 +18,27 @@ constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind 
 
 double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
 
+/// What runs through a track has no room to turn back in it: where friction has drawn it farther at one knot than at the next, both hold the place in between
+/// (least squares under an order; pool adjacent violators: Ayer et al., Ann. Math. Stat. 26:641, 1955).
+void keep_order(NeedleTrack& track) noexcept {
+  std::array<double, kTrackKnots> mean{};
+  std::array<int, kTrackKnots> size{};
+  int pools = 0;
+  for (int k = 0; k < track.n; ++k) {
+    const auto last = [&] { return static_cast<std::size_t>(pools - 1); };
+    mean[static_cast<std::size_t>(pools)] = track.knots[static_cast<std::size_t>(k)].strand;
+    size[static_cast<std::size_t>(pools++)] = 1;
+    for (; pools > 1 && mean[last() - 1] > mean[last()]; --pools) {
+      const int both = size[last() - 1] + size[last()];
+      mean[last() - 1] = (size[last() - 1] * mean[last() - 1] + size[last()] * mean[last()]) / both;
+      size[last() - 1] = both;
+    }
+  }
+  for (int p = 0, k = 0; p < pools; ++p)
+    for (int i = 0; i < size[static_cast<std::size_t>(p)]; ++i, ++k)
+      if (size[static_cast<std::size_t>(p)] > 1) track.knots[static_cast<std::size_t>(k)].strand = mean[static_cast<std::size_t>(p)];
+}
+
 /// Unit, of a strand at a place along it: an edge's own in its middle, between those of both edges at a node. A ring over which a bend is drawn sees it turn, not leap.
 Vec3 direction_at(const RodState& t, int edge, double f) noexcept {
   const auto of = [&](int i) -> Vec3 { return (t.x.col(i + 1) - t.x.col(i)).normalized(); };
@@ -98,13 +119,13 @@ void NeedleTracks::hold(const VesselWall& wall, const WallState& w, const TrackS
       const TrackKnot& knot = track.knots[static_cast<std::size_t>(k)];
       if (knot.strand >= 0.0) {
         if (on_needle.size() == on_needle.capacity()) continue;
-        uses_.push_back({i, k, static_cast<int>(on_needle.size()), true});
+        uses_.push_back({i, k, static_cast<int>(on_needle.size()), true, knot.strand});
         const Vec3 along = X_WN.q * needle_.tangent(knot.strand);
         on_needle.push_back(tether_of(wall, w, knot, knot.strand, along, X_WN * needle_.point(knot.strand), 1.0));
       } else if (thread != nullptr && on_thread.size() < on_thread.capacity()) {
         const auto [edge, f] = locate_arc(*thread, whole + knot.strand);
         const Vec3 a = thread->x.col(edge), b = thread->x.col(edge + 1);
-        uses_.push_back({i, k, static_cast<int>(on_thread.size()), false});
+        uses_.push_back({i, k, static_cast<int>(on_thread.size()), false, knot.strand});
         on_thread.push_back(tether_of(wall, w, knot, whole + knot.strand, direction_at(*thread, edge, f), (1.0 - f) * a + f * b, material_.thread_share));
       }
     }
@@ -144,7 +165,10 @@ int NeedleTracks::follow(VesselWall& wall, const WallState& w, TrackState& s, co
                          const std::vector<RodTether>& on_needle, const std::vector<RodTether>& on_thread, TrackEvent* list, int room) noexcept {
   Events e{list, room, 0};
   load_.fill(Vec3::Zero());
-  for (const Use& u : uses_) take_knot(wall, w, s, u, (u.needle ? on_needle : on_thread)[static_cast<std::size_t>(u.tether)], dt);
+  const auto tether = [&](const Use& u) -> const RodTether& { return (u.needle ? on_needle : on_thread)[static_cast<std::size_t>(u.tether)]; };
+  for (const Use& u : uses_) s.tracks[static_cast<std::size_t>(u.track)].knots[static_cast<std::size_t>(u.knot)].strand -= tether(u).slid;
+  for (int i = 0; i < s.n; ++i) keep_order(s.tracks[static_cast<std::size_t>(i)]);
+  for (const Use& u : uses_) take_knot(wall, w, s, u, tether(u), dt);
   for (int i = 0; i < s.n; ++i) tear(wall, w, s, s.tracks[static_cast<std::size_t>(i)], load_[static_cast<std::size_t>(i)], e);
   drop_passed(s, e);
   if (thread != nullptr) {
@@ -160,18 +184,17 @@ int NeedleTracks::follow(VesselWall& wall, const WallState& w, TrackState& s, co
   return e.n;
 }
 
-/// The load of one knot on the tissue, what slid through it, and whether it tears.
+/// The load of one knot on the tissue, and what sliding through it wears and costs.
 void NeedleTracks::take_knot(VesselWall& wall, const WallState& w, TrackState& s, const Use& u, const RodTether& t, double dt) noexcept {
   NeedleTrack& track = s.tracks[static_cast<std::size_t>(u.track)];
   TrackKnot& knot = track.knots[static_cast<std::size_t>(u.knot)];
   const Vec3 load = -t.force;
-  const double lengthwise = t.force.dot(t.along);
+  const double lengthwise = t.force.dot(t.along), slid = u.before - knot.strand;
   knot.lateral = (t.force - lengthwise * t.along).norm();
-  knot.strand -= t.slid;
   load_wall(wall, w, knot.at, t, dt);
-  track.hole = std::max(track.hole, std::max(needle_.wire_radius, track.hole) + material_.wear * knot.lateral * std::abs(t.slid));
+  track.hole = std::max(track.hole, std::max(needle_.wire_radius, track.hole) + material_.wear * knot.lateral * std::abs(slid));
   load_[static_cast<std::size_t>(u.track)] += load;
-  s.dissipated += t.limit * std::abs(t.slid) + t.drag * t.slid * t.slid / dt;
+  s.dissipated += t.limit * std::abs(slid) + t.drag * slid * slid / dt;
 }
 
 /// A track that is pulled harder than its bite bears moves through the tissue until it is not.

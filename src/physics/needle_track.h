@@ -10,7 +10,7 @@
 //             along the needle the force is F0 / sin(angle to the surface); below the least angle the point slides.
 //   Insertion  F = F_cut + sum over the length inside (f + c v): linear in depth (Okamura, Simone & O'Leary, IEEE TBME 51:1707, 2004).
 //   Strand    runs through a knot the way its edge does in the edge's middle and turns between two of them over the node: as straight edges a bend would turn a
-//             knot's friction and hold by its whole angle when the node is drawn through.
+//             knot's friction and hold by its whole angle when the node is drawn through. Its order along the track is kept: it has no room to turn back in it.
 //   Bends     Each knot adds mu times its lateral force: summed over a bend this is the capstan.
 //   Sawing    The hole's radius grows by wear x lateral force x length drawn through (Archard).
 //   Tearing   A track bears at most tear x bite (distance of its knot nearest to the cut edge); beyond that all of it moves through the
@@ -87,6 +87,7 @@ class NeedleTracks {
   struct Use {
     int track, knot, tether;
     bool needle;
+    double before;  // [m], strand
   };
   struct Events {
     TrackEvent* list;
