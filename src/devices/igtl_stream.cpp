@@ -41,8 +41,11 @@ void IgtlStream::lose() noexcept {
   peer_ = -1;
 }
 
-/// While there is a peer, others are turned away.
+/// While there is a peer, others are turned away. Whether it has left is looked at first: the next may wait already.
 void IgtlStream::accept_one() noexcept {
+  std::array<std::uint8_t, 512> unwanted;  // what a peer says is read and not used
+  const ssize_t got = peer_ < 0 ? 1 : ::recv(peer_, unwanted.data(), unwanted.size(), 0);
+  if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) lose();
   for (int fd; (fd = ::accept4(listen_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC)) >= 0;) {
     if (peer_ < 0) {
       peer_ = fd;
@@ -50,10 +53,6 @@ void IgtlStream::accept_one() noexcept {
       ::close(fd);
     }
   }
-  if (peer_ < 0) return;
-  std::array<std::uint8_t, 512> unwanted;  // what a peer says is read and not used
-  const ssize_t got = ::recv(peer_, unwanted.data(), unwanted.size(), 0);
-  if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) lose();
 }
 
 void IgtlStream::send(int tool, const Pose& X_WT, std::int64_t time_us) noexcept {
