@@ -1,6 +1,6 @@
 #pragma once
 // Poses of the simulated tools to 3D Slicer and others by OpenIGTLink: a server for one peer, TRANSFORM messages named Tool0,
-// Tool1, Tool2. Never blocks: what a slow peer does not take is not sent.
+// Tool1, Tool2. Never blocks: what a slow peer does not take is not sent. Tests: igtl_stream_test, igtl_library_test.
 
 #include <cstdint>
 #include <string>

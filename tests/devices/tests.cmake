@@ -1,4 +1,4 @@
-foreach(name calibration_file calibration_fit calibration_guide clock_sync demonstrator forceps_calibration forceps_stream frame_reader hand_tremor haptic_link igtl_message igtl_tracker monotone_cubic pointer_device pose_script
+foreach(name calibration_file calibration_fit calibration_guide clock_sync demonstrator forceps_calibration forceps_stream frame_reader hand_tremor haptic_link igtl_message igtl_stream igtl_tracker monotone_cubic pointer_device pose_script
              pose_track replay_device sample_check serial_forceps serial_port)
   filum_test(devices/${name})
 endforeach()
