@@ -6,7 +6,7 @@
 //   rim       darkest side of the white rim over the brightest, both above black
 //   edge      10-90 % width of the border's edges, largest of the four sides, over the marker's side
 //
-// Test: marker_tracker_test.
+// Tests: marker_quality_test, marker_tracker_test.
 
 #include <opencv2/core.hpp>
 #include <vector>

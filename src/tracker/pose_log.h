@@ -1,6 +1,6 @@
 #pragma once
 // Poses that a camera saw, as CSV: time [s], tool, marker, position [m], quaternion w x y z, residual [px], and the 21 numbers of the upper
-// triangle of the marker's covariance (position [m], rotation vector [rad]; camera's frame), row by row. Test: marker_tracker_test.
+// triangle of the marker's covariance (position [m], rotation vector [rad]; camera's frame), row by row. Tests: pose_log_test, marker_tracker_test.
 
 #include <fstream>
 #include <string>

@@ -1,5 +1,5 @@
 if(TARGET filum_tracker)
-  foreach(name camera_guide camera_model field_frame marker_tracker)
+  foreach(name camera_guide camera_model field_frame marker_quality marker_tracker pose_log)
     filum_test(tracker/${name} opencv_imgproc opencv_calib3d)
   endforeach()
   if(TARGET filum_camera)
