@@ -22,9 +22,9 @@ DrivenTask driven_task(const std::string& root, const std::string& task) {
     HapticLoop loop;
     std::int64_t next_us = 0;
   };
-  auto hands = std::make_shared<Hands>(open_inputs("demo", root, task));
   DrivenTask driven;
-  driven.model = load_setup(root, task).model;
+  driven.model = load_setup(root, task).model;  // first: it knows which tasks there are
+  auto hands = std::make_shared<Hands>(open_inputs("demo", root, task));
   driven.inputs = [hands](const World& world) {
     if (!hands->eyes && hands->demonstrator != nullptr) {
       hands->eyes.emplace(world.observation(), world.description());
