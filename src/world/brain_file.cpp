@@ -124,7 +124,8 @@ std::vector<BladeShape> read_forms(const std::string& root, const YamlNode& blad
     for (const std::string& other : blade.texts("others")) names.push_back(other);
   std::vector<BladeShape> forms;
   for (const std::string& name : names) {
-    if (name.find('/') != std::string::npos || name.find("..") != std::string::npos) blade.refuse("others", "names of files in models/spatula");
+    const char* const key = forms.empty() ? "model" : "others";
+    if (name.find('/') != std::string::npos || name.find("..") != std::string::npos) blade.refuse(key, "names of files in models/spatula");
     const std::string file = "models/spatula/" + name + ".yaml";
     if (std::find(m.sources.begin(), m.sources.end(), file) == m.sources.end()) m.sources.push_back(file);
     forms.push_back(load_blade(root + "/" + file));
