@@ -1,5 +1,5 @@
 #pragma once
-// What a guided calibration of the forceps is to ask for, from a page's wish. Test: tests/cli/calibration_session_test.cpp.
+// What a guided calibration of the forceps is to ask for, from a page's wish. Test: tests/cli/calibration_plan_test.cpp.
 
 #include <string>
 #include <vector>

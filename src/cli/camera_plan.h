@@ -1,5 +1,5 @@
 #pragma once
-// What a guided calibration of a camera is to look at, from a page's wish. Test: tests/cli/camera_session_test.cpp.
+// What a guided calibration of a camera is to look at, from a page's wish. Test: tests/cli/camera_plan_test.cpp.
 
 #include <string>
 

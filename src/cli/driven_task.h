@@ -1,5 +1,5 @@
 #pragma once
-// A task with the hands of its demonstration, to be stepped by whoever times it. Tests: tests/cli/bench_test.cpp, doctor_test.cpp.
+// A task with the hands of its demonstration, to be stepped by whoever times it. Test: tests/cli/driven_task_test.cpp.
 
 #include <string>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a trainer is started with, tried before anybody waits for it. Test: tests/cli/train_test.cpp.
+// What a trainer is started with, tried before anybody waits for it. Tests: tests/cli/trainer_check_test.cpp, train_test.cpp.
 
 #include "cli/trainer.h"
 

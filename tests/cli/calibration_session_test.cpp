@@ -81,10 +81,7 @@ TEST_F(CalibrationSessionTest, RefusesACurveWithItsReasonAndWritesNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
-TEST(CalibrationPlan, WishesOfAPageAreChecked) {
-  for (const char* wish : {"nothing", "[]", R"({"sensor":"../x"})", R"({"repeats":0})", R"({"identity":0})", R"({"identity":"x"})", R"({"angles":[0,1,2,3]})", R"({"angles":[0,1,2,3,3]})", R"({"forces":[0,1,2,3,99]})", R"({"name":""})"})
-    EXPECT_THROW(calibration_plan(wish, "", "", ""), InputError) << wish;
-  EXPECT_EQ(calibration_plan("{}", "p", "r", "f").repeats, 2);
+TEST(CalibrationSession, APortThatIsNotThereIsRefused) {
   EXPECT_THROW(CalibrationSession(calibration_plan("{}", "/dev/no-such-port", FILUM_SOURCE_DIR, "")), InputError);
 }
 

@@ -87,15 +87,6 @@ TEST_F(CameraSessionTest, ThePictureIsTheOneOfThisCalibration) {
   EXPECT_EQ(session.preview(), "new");
 }
 
-TEST(CameraPlan, WishesOfAPageAreChecked) {
-  for (const char* wish : {"nothing", "[]", R"({"source":-1})", R"({"source":"/etc/passwd"})", R"({"source":100})", R"({"square":0})", R"({"square":"x"})", R"({"name":"--out"})",
-                           R"({"name":"a\nb"})", R"({"name":""})"})
-    EXPECT_THROW(camera_plan(wish, "filum_camera", "f", ""), InputError) << wish;
-  EXPECT_EQ(camera_plan(R"({"source":2,"square":7.5})", "p", "f", "").source, "2");
-  EXPECT_EQ(camera_plan(R"({"source":2})", "p", "f", "video.avi").source, "video.avi") << "the command line's comes first";
-  EXPECT_THROW(camera_plan("{}", "", "f", ""), InputError) << "not built";
-}
-
 TEST_F(CameraSessionTest, ThePageAsksThroughTheLaboratory) {
   LabOptions options;
   options.root = FILUM_SOURCE_DIR;

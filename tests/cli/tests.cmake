@@ -3,8 +3,8 @@ if(TARGET filum)
   add_test(NAME cli.program COMMAND bash ${CMAKE_CURRENT_LIST_DIR}/program_test.sh $<TARGET_FILE:filum>)
   set_tests_properties(cli.program PROPERTIES TIMEOUT 600)
 endif()
-foreach(name calibration_session camera_session child_process dataset_upload handle_watch inputs knot_pull live_session options pacing rating_desk requests
-             reconcile_job replay_session security session_files setup study_job trainer trainer_api trainer_lab wall_colours)
+foreach(name calibration_plan calibration_session camera_plan camera_session child_process dataset_upload driven_task handle_watch inputs knot_pull live_session options pacing rating_desk requests
+             reconcile_job replay_session security session_files setup study_job trainer trainer_api trainer_check trainer_lab wall_colours)
   filum_test(cli/${name})
 endforeach()
 # the subcommands, called in the test's own process (program_call.h)
