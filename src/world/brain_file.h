@@ -1,6 +1,6 @@
 #pragma once
 // Reads scenes with a brain (curricula/TASK/scene.yaml, format filum-brain-scene/1) and what they name: models/brain/NAME.yaml
-// (filum-brain/1), models/spatula/NAME.yaml (filum-spatula/1).
+// (filum-brain/1), models/spatula/NAME.yaml (filum-spatula/1). Tests: brain_file_test, brain_scene_test.
 
 #include <memory>
 #include <string>

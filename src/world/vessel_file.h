@@ -1,5 +1,5 @@
 #pragma once
-// `tissue:` of a scene, and models/track/NAME.yaml (format filum-track/1): how tissue lets a needle through.
+// `tissue:` of a scene, and models/track/NAME.yaml (format filum-track/1): how tissue lets a needle through. Test: vessel_file_test.
 
 #include <string>
 

@@ -1,4 +1,4 @@
-foreach(name blade_arm blood_flow brain_scene brain_section clamp_bars cortex describe falx fixtures fresh_suture join_test measured_model model_bounds model_file needle_file observe pull_test scene_file state_hash world)
+foreach(name blade_arm blood_flow brain_file brain_scene brain_section clamp_bars cortex describe falx fixtures fresh_suture join_test measured_model model_bounds model_file needle_file observe pull_test scene_file state_hash vessel_file world)
   filum_test(world/${name})
 endforeach()
 filum_test(world/needle_scene)
