@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -86,7 +87,7 @@ double number(const std::string& message, int i) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(big_endian(message, 58 + 4 * static_cast<std::size_t>(i), 4)));
 }
 
-std::string text_at(const std::string& message, std::size_t at) { return {message.c_str() + at}; }
+std::string text_at(const std::string& message, std::size_t at) { return {message.c_str() + std::min(at, message.size())}; }
 
 InputError refusal(const std::string& address, int port) {
   try {
