@@ -32,7 +32,7 @@ def of_scene(field, default=None):
 
 
 STITCHES = int(of_scene('sutures', '"1"').strip('"'))
-LOOP = 2.9                                                # [mm], most of a knot's loop: one of 3.1 or 3.2 leaves joins that leak 11 to 21 ml/min
+LOOP = 2.95                                               # [mm], most of a knot's loop: one of 3.1 or 3.2 leaves joins that leak 11 to 21 ml/min
 SLIDES = {8: (.7, .8, .9), 6: (.6, .8, .55)}.get(STITCHES, (.8, .9, 1.0))   # [s], of the clamp before a tie: fewer stitches leave more of the edge to itself
 
 # Lengths in mm, times in s. aside: of needle and forceps from the middle (x), for what turned with the stitches before; enter, leave:
