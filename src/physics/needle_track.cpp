@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "physics/thread_grasp.h"
@@ -21,22 +22,23 @@ double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_l
 /// What runs through a track has no room to turn back in it: where friction has drawn it farther at one knot than at the next, both hold the place in between
 /// (least squares under an order; pool adjacent violators: Ayer et al., Ann. Math. Stat. 26:641, 1955).
 void keep_order(NeedleTrack& track) noexcept {
-  std::array<double, kTrackKnots> mean{};
-  std::array<int, kTrackKnots> size{};
-  int pools = 0;
-  for (int k = 0; k < track.n; ++k) {
-    const auto last = [&] { return static_cast<std::size_t>(pools - 1); };
-    mean[static_cast<std::size_t>(pools)] = track.knots[static_cast<std::size_t>(k)].strand;
-    size[static_cast<std::size_t>(pools++)] = 1;
-    for (; pools > 1 && mean[last() - 1] > mean[last()]; --pools) {
-      const int both = size[last() - 1] + size[last()];
-      mean[last() - 1] = (size[last() - 1] * mean[last() - 1] + size[last()] * mean[last()]) / both;
-      size[last() - 1] = both;
+  struct Pool {
+    double mean;  // [m], strand
+    int size;
+  };
+  std::array<Pool, kTrackKnots> pools;
+  std::size_t n = 0;
+  const std::span knots(track.knots.data(), static_cast<std::size_t>(track.n));
+  for (const TrackKnot& knot : knots) {
+    pools[n++] = {knot.strand, 1};
+    for (; n > 1 && pools[n - 2].mean > pools[n - 1].mean; --n) {
+      const Pool a = pools[n - 2], b = pools[n - 1];
+      pools[n - 2] = {(a.size * a.mean + b.size * b.mean) / (a.size + b.size), a.size + b.size};
     }
   }
-  for (int p = 0, k = 0; p < pools; ++p)
-    for (int i = 0; i < size[static_cast<std::size_t>(p)]; ++i, ++k)
-      if (size[static_cast<std::size_t>(p)] > 1) track.knots[static_cast<std::size_t>(k)].strand = mean[static_cast<std::size_t>(p)];
+  std::size_t k = 0;
+  for (std::size_t p = 0; p < n; ++p)
+    for (int i = 0; i < pools[p].size; ++i) knots[k++].strand = pools[p].mean;
 }
 
 /// Unit, of a strand at a place along it: an edge's own in its middle, between those of both edges at a node. A ring over which a bend is drawn sees it turn, not leap.

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 
 namespace filum {
 namespace yaml_file_test {
@@ -49,18 +49,6 @@ void read_everything(const YamlNode& node) {
   EXPECT_EQ(tools[0].text("name"), "left");
 }
 
-/// The InputError that `read` throws.
-template <class Read>
-InputError error_of(Read&& read) {
-  try {
-    read();
-  } catch (const InputError& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no InputError";
-  return InputError("", "", "", "");
-}
-
 TEST(YamlFile, ReadsEveryKindOfFieldAndFinishes) {
   const YamlNode node = model();
   read_everything(node);
@@ -81,7 +69,7 @@ TEST(YamlFile, FallbacksAreForAbsentKeysOnly) {
 TEST(YamlFile, UnknownKeyIsNamedWithItsLine) {
   YamlNode node = YamlNode::parse("a: 1\nb: 2\n", "f.yaml");
   node.number("a");
-  const InputError error = error_of([&] { node.finish(); });
+  const InputError error = refusal_by([&] { node.finish(); });
   EXPECT_EQ(error.file, "f.yaml:2");
   EXPECT_EQ(error.field, "b");
   EXPECT_EQ(error.expected, "no such field here, only: a");
@@ -90,7 +78,7 @@ TEST(YamlFile, UnknownKeyIsNamedWithItsLine) {
 TEST(YamlFile, UnknownKeyInsideAListItemIsNamed) {
   YamlNode node = YamlNode::parse("tools:\n  - {name: a}\n  - name: b\n    nmae: c\n", "f.yaml");
   for (const YamlNode& tool : node.items("tools")) tool.text("name");
-  const InputError error = error_of([&] { node.finish(); });
+  const InputError error = refusal_by([&] { node.finish(); });
   EXPECT_EQ(error.file, "f.yaml:4");
   EXPECT_EQ(error.field, "tools[1].nmae");
   EXPECT_EQ(error.expected, "no such field here, only: name");
@@ -107,7 +95,7 @@ TEST(YamlFile, ScalarsOfAFreeFieldAtAnyDepth) {
 
 TEST(YamlFile, WrongUnitNamesFileLineFieldValueAndExpected) {
   const YamlNode node = YamlNode::parse("x: 1\ninner:\n  modulus: 3 mm\n", "m.yaml");
-  const InputError error = error_of([&] { node.map("inner").quantity("modulus", "GPa"); });
+  const InputError error = refusal_by([&] { node.map("inner").quantity("modulus", "GPa"); });
   EXPECT_EQ(error.file, "m.yaml:3");
   EXPECT_EQ(error.field, "inner.modulus");
   EXPECT_EQ(error.value, "\"3 mm\"");
@@ -116,7 +104,7 @@ TEST(YamlFile, WrongUnitNamesFileLineFieldValueAndExpected) {
 
 TEST(YamlFile, MissingFieldNamesTheMapItBelongsTo) {
   const YamlNode node = YamlNode::parse("x: 1\ninner:\n  y: 2\n", "m.yaml");
-  const InputError error = error_of([&] { node.map("inner").quantity("modulus", "GPa"); });
+  const InputError error = refusal_by([&] { node.map("inner").quantity("modulus", "GPa"); });
   EXPECT_EQ(error.field, "inner.modulus");
   EXPECT_EQ(error.value, "nothing");
 }
@@ -126,7 +114,7 @@ TEST(YamlFile, RangesAreChecked) {
   EXPECT_THROW(node.quantity("a", "mm", Range::positive()), InputError);
   EXPECT_EQ(node.quantity("a", "mm", Range::not_negative()), 0.0);
   EXPECT_EQ(node.quantity("b", "mm", Range::between(5e-3, 6e-3)), 5e-3);
-  const InputError error = error_of([&] { node.quantity("b", "mm", Range::between(6e-3, 8e-3)); });
+  const InputError error = refusal_by([&] { node.quantity("b", "mm", Range::between(6e-3, 8e-3)); });
   EXPECT_NE(error.expected.find("6 mm"), std::string::npos);
   EXPECT_NE(error.expected.find("8 mm"), std::string::npos);
 }
@@ -142,13 +130,13 @@ TEST(YamlFile, WrongShapesAreRefused) {
   EXPECT_THROW(node.integer("nodes", 0, 9), InputError);
   EXPECT_THROW(node.flag("name"), InputError);
   EXPECT_THROW(node.choice("kind", {"scissors"}), InputError);
-  const InputError error = error_of([&] { node.quantities("words", "mm"); });
+  const InputError error = refusal_by([&] { node.quantities("words", "mm"); });
   EXPECT_EQ(error.field, "words[0]");
 }
 
 TEST(YamlFile, CallersRefuseWithTheSameDetail) {
   const YamlNode node = model();
-  const InputError error = error_of([&] { node.refuse("diameter", "less than 20 um"); });
+  const InputError error = refusal_by([&] { node.refuse("diameter", "less than 20 um"); });
   EXPECT_EQ(error.file, "model.yaml:3");
   EXPECT_EQ(error.value, "\"25 um\"");
 }
@@ -162,7 +150,7 @@ struct Bad {
 class Malformed : public testing::TestWithParam<Bad> {};
 
 TEST_P(Malformed, IsAnInputErrorWithALine) {
-  const InputError error = error_of([&] { YamlNode::parse(GetParam().text, "f.yaml"); });
+  const InputError error = refusal_by([&] { YamlNode::parse(GetParam().text, "f.yaml"); });
   EXPECT_EQ(error.file, std::string("f.yaml") + GetParam().line) << error.what();
 }
 
@@ -185,7 +173,7 @@ TEST(YamlFile, DepthAndSizeAreBounded) {
 }
 
 TEST(YamlFile, MissingFileIsAnInputError) {
-  const InputError error = error_of([] { YamlNode::load("no/such/file.yaml"); });
+  const InputError error = refusal_by([] { YamlNode::load("no/such/file.yaml"); });
   EXPECT_EQ(error.file, "no/such/file.yaml");
   EXPECT_THROW(YamlNode::load(FILUM_SOURCE_DIR), InputError);  // a folder
 }

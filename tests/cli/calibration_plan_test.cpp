@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 
 namespace filum {
 namespace calibration_plan_test {
@@ -10,14 +10,7 @@ namespace calibration_plan_test {
 CalibrationPlan taken(const std::string& wish) { return calibration_plan(wish, "/dev/ttyACM0", "root", "folder"); }
 
 /// What is said of a wish; an empty field if it is taken.
-InputError refusal(const std::string& wish) {
-  try {
-    taken(wish);
-  } catch (const InputError& error) {
-    return error;
-  }
-  return {"", "", "taken", ""};
-}
+InputError refusal(const std::string& wish) { return refusal_by([&] { taken(wish); }); }
 
 std::string with(const std::string& key, const std::string& value) { return "{\"" + key + "\":" + value + "}"; }
 

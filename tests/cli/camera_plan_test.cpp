@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 
 namespace filum {
 namespace camera_plan_test {
@@ -10,14 +10,7 @@ namespace camera_plan_test {
 CameraPlan taken(const std::string& wish, const std::string& fixed = "") { return camera_plan(wish, "filum_camera", "folder", fixed); }
 
 /// What is said of a wish; an empty field if it is taken.
-InputError refusal(const std::string& wish, const std::string& fixed = "") {
-  try {
-    taken(wish, fixed);
-  } catch (const InputError& error) {
-    return error;
-  }
-  return {"", "", "taken", ""};
-}
+InputError refusal(const std::string& wish, const std::string& fixed = "") { return refusal_by([&] { taken(wish, fixed); }); }
 
 std::string with(const std::string& key, const std::string& value) { return "{\"" + key + "\":" + value + "}"; }
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.h"
 #include "devices/pose_script.h"
+#include "tests/refusal.h"
 #include "tests/session/synthetic.h"
 #include "world/model.h"
 
@@ -40,14 +40,7 @@ class DrivenTaskTest : public testing::Test {
     std::ofstream(folder_.file("curricula/short-hold/demonstration.yaml")) << kScript;
   }
   DrivenTask task(const std::string& name = "short-hold") const { return driven_task(folder_.file(""), name); }
-  InputError refusal(const std::string& root, const std::string& name) const {
-    try {
-      driven_task(root, name);
-    } catch (const InputError& error) {
-      return error;
-    }
-    return {"", "", "taken", ""};
-  }
+  InputError refusal(const std::string& root, const std::string& name) const { return refusal_by([&] { driven_task(root, name); }); }
   synthetic::Folder folder_;
 };
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/error.h"
 #include "devices/haptic_link.h"
+#include "tests/refusal.h"
 #include "tests/devices/pty.h"
 #include "tests/session/synthetic.h"
 
@@ -25,14 +25,7 @@ class TrainerCheck : public testing::Test {
     std::ofstream(folder_.file(name)) << text;
     return folder_.file(name);
   }
-  InputError refusal() const {
-    try {
-      check_trainer_options(options_);
-    } catch (const InputError& error) {
-      return error;
-    }
-    return {"", "", "taken", ""};
-  }
+  InputError refusal() const { return refusal_by([&] { check_trainer_options(options_); }); }
   void expect_refused(const std::string& option, const std::string& field, const std::string& value, const std::string& expected) const {
     const InputError error = refusal();
     EXPECT_EQ(error.file, option) << error.what();

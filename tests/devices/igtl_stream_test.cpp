@@ -10,9 +10,9 @@
 #include <bit>
 #include <cstring>
 
-#include "base/error.h"
 #include "devices/igtl_message.h"
 #include "devices/igtl_tracker.h"
+#include "tests/refusal.h"
 
 namespace filum {
 namespace igtl_stream_test {
@@ -89,14 +89,7 @@ double number(const std::string& message, int i) {
 
 std::string text_at(const std::string& message, std::size_t at) { return {message.c_str() + std::min(at, message.size())}; }
 
-InputError refusal(const std::string& address, int port) {
-  try {
-    IgtlStream stream(address, port);
-  } catch (const InputError& error) {
-    return error;
-  }
-  return {"", "", "taken", ""};
-}
+InputError refusal(const std::string& address, int port) { return refusal_by([&] { IgtlStream stream(address, port); }); }
 
 TEST(IgtlStream, PortZeroTakesOneThatIsFree) {
   const IgtlStream first("127.0.0.1", 0), second("127.0.0.1", 0);

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 
 namespace filum {
 namespace pose_log_test {
@@ -58,14 +58,7 @@ Pose sent(double x) {
   return X;
 }
 
-InputError refusal(const std::string& path) {
-  try {
-    PoseLog log(path);
-  } catch (const InputError& error) {
-    return error;
-  }
-  return {"", "", "taken", ""};
-}
+InputError refusal(const std::string& path) { return refusal_by([&] { PoseLog log(path); }); }
 
 TEST_F(PoseLogTest, TheHeadNamesEveryColumnWithItsUnit) {
   { const PoseLog log(path_); }

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <numbers>
 
-#include "base/error.h"
 #include "base/tet_mesh.h"
+#include "tests/refusal.h"
 
 namespace filum {
 namespace brain_file_test {
@@ -96,14 +96,7 @@ class BrainFile : public testing::Test {
     write("models/brain/block.yaml", brain);
     return load_brain_scene(root_.string(), "made-up", model_file);
   }
-  InputError refusal(const std::string& scene, const std::string& brain = kBrain) const {
-    try {
-      load(scene, brain);
-    } catch (const InputError& error) {
-      return error;
-    }
-    return {"", "", "taken", ""};
-  }
+  InputError refusal(const std::string& scene, const std::string& brain = kBrain) const { return refusal_by([&] { load(scene, brain); }); }
   static void expect_names(const InputError& error, const std::string& file, const std::string& field, const std::string& value, const std::string& expected) {
     EXPECT_NE(error.file.find(file), std::string::npos) << error.what();
     EXPECT_EQ(error.field, field) << error.what();
@@ -116,14 +109,7 @@ class BrainFile : public testing::Test {
   void expect_brain_refused(const std::string& brain, const std::string& field, const std::string& value, const std::string& expected) const {
     expect_names(refusal(kScene, brain), "models/brain/block.yaml", field, value, expected);
   }
-  InputError blade_refusal(const std::string& text) const {
-    try {
-      load_blade(write("models/spatula/bad.yaml", text));
-    } catch (const InputError& error) {
-      return error;
-    }
-    return {"", "", "taken", ""};
-  }
+  InputError blade_refusal(const std::string& text) const { return refusal_by([&] { load_blade(write("models/spatula/bad.yaml", text)); }); }
 
   fs::path root_;
 };

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "base/error.h"
+#include "tests/refusal.h"
 #include "world/wall_file.h"
 
 namespace filum {
@@ -88,14 +88,7 @@ Model model_of(const std::string& text, const std::string& vessel_file = "") {
   return m;
 }
 
-InputError refusal_of(const std::string& text) {
-  try {
-    model_of(text);
-  } catch (const InputError& error) {
-    return error;
-  }
-  return {"", "", "taken", ""};
-}
+InputError refusal_of(const std::string& text) { return refusal_by([&] { model_of(text); }); }
 
 /// Refused by the file, the field's path and what was found.
 void expect_refused(const std::string& text, const std::string& field, const std::string& value, const std::string& expected) {
@@ -126,14 +119,7 @@ class TrackFile : public testing::Test {
     std::ofstream(path_) << text;
     return load_track(path_);
   }
-  InputError refusal(const std::string& text) const {
-    try {
-      load(text);
-    } catch (const InputError& error) {
-      return error;
-    }
-    return {"", "", "taken", ""};
-  }
+  InputError refusal(const std::string& text) const { return refusal_by([&] { load(text); }); }
   std::string path_;
 };
 
