@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cinttypes>
 #include <cstdio>
 #include <cstring>
@@ -16,12 +17,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "cli/security.h"
 #include "cli/setup.h"
 #include "devices/demonstrator.h"
@@ -106,11 +109,21 @@ class Rehearsal {
     hands_ = std::make_unique<HapticLoop>(std::move(devices));
     memory_.from_the_start();
     const std::int64_t now = std::exchange(next_us_, 0);
+    const std::uint64_t moved = std::exchange(moved_, 0);
     move_hands(now - kTick);
-    if (!memory_.all_told()) throw InputError(file, "tools", "other keys before " + std::to_string(1e-6 * static_cast<double>(now)) + " s", "up to there those of the script before it");
+    if (!memory_.all_told() || moved_ != moved) throw InputError(file, "tools", "other keys before " + std::to_string(1e-6 * static_cast<double>(now)) + " s", "up to there those of the script before it");
   }
   void move_hands(std::int64_t until_us) noexcept {
-    for (; next_us_ <= until_us; next_us_ += kTick) hands_->tick(next_us_);
+    for (; next_us_ <= until_us; next_us_ += kTick) {
+      hands_->tick(next_us_);
+      for (const ToolInput& t : hands_->inputs().read().tools) moved_ = hash_of(t, moved_);
+    }
+  }
+  static std::uint64_t hash_of(const ToolInput& t, std::uint64_t seed) noexcept {
+    const auto& p = t.X_WD.p;
+    const auto& q = t.X_WD.q.coeffs();
+    const std::array<double, 10> moved{p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w(), t.grip_angle, t.valid ? 1.0 : 0.0, static_cast<double>(t.buttons)};
+    return hash_array(std::span(moved), seed);
   }
 
   void tell_events() {
@@ -191,6 +204,7 @@ class Rehearsal {
   Memory memory_;
   std::unique_ptr<HapticLoop> hands_;
   std::int64_t next_us_ = 0;
+  std::uint64_t moved_ = 0;  // hash of all that the hands did
   std::string name_;
   std::size_t told_ = 0;   // events
   double round_cut_ = world_.description().tissue.lumen ? 180.0 / std::numbers::pi / CutLine(world_.description().tissue).radius() : 0.0;  // [deg/m]

@@ -1,5 +1,5 @@
 #!/bin/bash
-# A rehearsal that goes on from a state in its midst ends in the state of a run from the start, bit for bit, and refuses a script that looks elsewhere before it.
+# A rehearsal that goes on from a state in its midst ends in the state of a run from the start, bit for bit, and refuses a script that looks elsewhere or moves otherwise before it.
 # Usage: rehearsal_test.sh FILUM REHEARSAL ROOT
 filum=$(realpath "$1") rehearsal=$(realpath "$2") root=$(realpath "$3")
 script=$root/curricula/artery-knot/demonstration.yaml
@@ -18,3 +18,8 @@ whole=$("$filum" run artery-knot --root "$root" --input demo --longest 4 --json 
 echo "go other $PWD/other.yaml 4" >first_3.0
 for _ in $(seq 200); do grep -qs '^done' other.out && break; sleep 0.1; done
 grep -q "^failed: .*up to there" other.out || fail "took a script that had looked elsewhere"
+sed '0,/"0.8219 mm"/s//"0.7219 mm"/' "$script" >moved.yaml
+cmp -s "$script" moved.yaml && fail "no key to move"
+echo "go moved $PWD/moved.yaml 4" >first_3.0
+for _ in $(seq 200); do grep -qs '^done' moved.out && break; sleep 0.1; done
+grep -q "^failed: .*up to there" moved.out || fail "took a script that had moved otherwise"
