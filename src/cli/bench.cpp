@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -31,6 +32,7 @@ struct BenchOptions {
   CommonOptions common;
   std::vector<std::string> names;
   int wild = 0;              // seeds of violent hands instead of benches
+  int wild_first = 1;        // seed of the first
   double wild_seconds = 0.6;  // [s], scene time of each
   int wild_sewn = 0;          // stitches by construction that they find in a vessel
 };
@@ -97,8 +99,28 @@ bool two_stumps(const Model& model) {
   return sectors.size() == 2 && sectors[0] > 0 && sectors[1] > 0;
 }
 
+/// On stderr every ten seconds, for runs of minutes or a night.
+class WildClock {
+ public:
+  WildClock(const std::string& task, const BenchOptions& o, double dt, const Streams& io) : task_(task), options_(o), dt_(dt), io_(io) {}
+  void tell(const WildRun& run) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::seconds(10)) return;
+    last_ = now;
+    std::fprintf(io_.err, "filum: %s, seed %llu (%d to %d): %.0f of %.0f s of scene\n", task_.c_str(), static_cast<unsigned long long>(run.seed), options_.wild_first,
+                 options_.wild_first + options_.wild - 1, dt_ * static_cast<double>(run.steps), options_.wild_seconds);
+  }
+
+ private:
+  const std::string& task_;
+  const BenchOptions& options_;
+  double dt_;  // [s]
+  const Streams& io_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 /// Whether scenes survive hands that do anything, and how late their steps were.
-nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o) {
+nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o, const Streams& io) {
   using Json = nlohmann::ordered_json;
   const Setup setup = load_setup(o.common.root, task);
   if (o.wild_sewn > 0 && !two_stumps(*setup.model)) throw InputError("bench", "--wild-sewn", "task " + task, "a task with two vessels end to end");
@@ -108,8 +130,10 @@ nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o)
   WildRun worst;
   std::uint64_t steps = 0;
   Json faults = Json::array();
-  for (int seed = 1; seed <= o.wild; ++seed) {
-    const WildRun run = run_wild(world, first, static_cast<std::uint64_t>(seed), static_cast<int>(std::lround(o.wild_seconds / setup.model->description.dt)));
+  const double dt = setup.model->description.dt;
+  WildClock clock(task, o, dt, io);
+  for (int seed = o.wild_first; seed < o.wild_first + o.wild; ++seed) {
+    const WildRun run = run_wild(world, first, static_cast<std::uint64_t>(seed), static_cast<int>(std::lround(o.wild_seconds / dt)), [&](const WildRun& r) { clock.tell(r); });
     if (!run.fault.empty()) faults.push_back({{"seed", seed}, {"step", run.steps}, {"fault", run.fault}});
     steps += run.steps;
     worst.fastest = std::max(worst.fastest, run.fastest);
@@ -120,7 +144,7 @@ nlohmann::ordered_json wild_json(const std::string& task, const BenchOptions& o)
     worst.apart = std::max(worst.apart, run.apart);
     worst.buried = std::max(worst.buried, run.buried);
   }
-  return {{"task", task}, {"seeds", o.wild}, {"steps", steps}, {"scene_s", static_cast<double>(steps) * setup.model->description.dt}, {"faults", faults}, {"fastest_m_per_s", worst.fastest},
+  return {{"task", task}, {"first_seed", o.wild_first}, {"seeds", o.wild}, {"steps", steps}, {"scene_s", static_cast<double>(steps) * dt}, {"faults", faults}, {"fastest_m_per_s", worst.fastest},
           {"deepest_share", worst.deepest}, {"longest_step_ms", worst.slowest_ms}, {"late_steps", worst.late}, {"solver_trouble_events", worst.trouble}, {"apart_steps", worst.apart}, {"buried_steps", worst.buried}};
 }
 
@@ -128,7 +152,7 @@ int run_wild_hands(const BenchOptions& o, const Streams& io) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   bool sound = true;
   for (const std::string& task : o.names.empty() ? kWildTasks : o.names) {
-    list.push_back(wild_json(task, o));
+    list.push_back(wild_json(task, o, io));
     sound = sound && list.back()["faults"].empty();
     if (!o.common.json) std::fprintf(io.out, "%s\n", list.back().dump().c_str());
     std::fflush(io.out);
@@ -163,6 +187,7 @@ void add_bench(CLI::App& app, Action& action) {
   command->add_option("name", o->names,
                       "Benches to run, by name or beginning of the name up to a hyphen (default: all)");
   command->add_option("--wild", o->wild, "Instead: so many seeds of violent random hands on the tasks named (default: one of every kind)")->check(CLI::Range(1, 1000000));
+  command->add_option("--wild-first", o->wild_first, "The first of the seeds")->check(CLI::Range(1, 1000000000));
   command->add_option("--wild-seconds", o->wild_seconds, "Scene time of each seed")->check(between(0.01, 3600.0));
   command->add_option("--wild-sewn", o->wild_sewn, "So many stitches by construction that they find (tasks with two vessels end to end)")->check(CLI::Range(1, 8));
   add_common(*command, o->common);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
 
 #include "evidence/percentile.h"
 #include "evidence/timing.h"
@@ -17,13 +18,13 @@ namespace {
 constexpr double kElement = 0.12e-3;  // [m], along
 
 /// Two stumps of a rat femoral artery (models/vessel/rat-femoral-artery.yaml without its opening angle).
-VesselMesh stumps(int around, int along) {
+VesselMesh stumps(int around, int along, double length) {
   TubeShape s;
   s.inner_radius = 0.26e-3;
   s.thickness = 90e-6;
   s.around = around;
   s.along = along;
-  s.length = kElement * along;
+  s.length = length;
   return make_stumps(s, {});
 }
 
@@ -55,10 +56,10 @@ class Handling {
   WallPoint pressed_;
 };
 
-void bench_stumps(BenchResult& r, const StepTimer& timer, int around, int along) {
+void bench_stumps(BenchResult& r, const StepTimer& timer, int around, int along, double length) {
   WallOptions options;
   options.dt = 1e-3 * r.dt_ms;
-  VesselWall wall(stumps(around, along), bench_artery(), options);
+  VesselWall wall(stumps(around, along, length), bench_artery(), options);
   WallState state = wall.first_state();
   Handling handling(wall, state, around, along);
   r.nodes = static_cast<int>(state.x.cols());
@@ -118,18 +119,21 @@ std::vector<WallLayer> bench_artery() {
 
 std::vector<std::pair<BenchResult, TimedBench>> vessel_benches() {
   std::vector<std::pair<BenchResult, TimedBench>> list;
-  const auto add = [&](const std::string& name, int steps, int around, int along) {
+  const auto add = [&](const std::string& name, int steps, int around, int along, double length) {
     BenchResult r;
     r.name = name;
     r.dt_ms = 2.0;
     r.steps = steps;
-    list.emplace_back(r, [around, along](BenchResult& result, const StepTimer& t) { bench_stumps(result, t, around, along); });
+    list.emplace_back(r, [around, along, length](BenchResult& result, const StepTimer& t) { bench_stumps(result, t, around, along, length); });
   };
-  add("vessel-wall-168", 2000, 14, 2);
-  add("vessel-wall-1536", 2000, 24, 15);
+  add("vessel-wall-168", 2000, 14, 2, 2 * kElement);
+  add("vessel-wall-1536", 2000, 24, 15, 15 * kElement);
   for (const auto& [name, along] : {std::pair("vessel-scaling-200", 1), {"vessel-scaling-400", 3}, {"vessel-scaling-800", 7}, {"vessel-scaling-1500", 15},
                                     {"vessel-scaling-3000", 30}, {"vessel-scaling-6000", 61}, {"vessel-scaling-12000", 124}})
-    add(name, 300, 24, along);
+    add(name, 300, 24, along, along * kElement);
+  for (const auto& [name, around, along] : {std::tuple("vessel-refined-200", 9, 5), {"vessel-refined-400", 12, 7}, {"vessel-refined-800", 17, 10}, {"vessel-refined-1500", 24, 15},
+                                            {"vessel-refined-3000", 34, 21}, {"vessel-refined-6000", 48, 30}, {"vessel-refined-12000", 68, 43}})
+    add(name, 300, around, along, 15 * kElement);
   return list;
 }
 

@@ -105,7 +105,7 @@ Inputs WildHands::next(const Observation& o) {
   return in;
 }
 
-WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps) {
+WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps, const WildProgress& progress) {
   world.restore(first);
   WildHands hands(seed, world.description());
   WallWatch watch(world.model());
@@ -135,6 +135,7 @@ WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps
     if (o.radius > 0.0 && o.n_contacts > 0) run.deepest = std::max(run.deepest, -o.min_gap / (2.0 * o.radius));
     if (run.fault.empty() && run.fastest > kFastest) run.fault = "something moves faster than hands and thread can make it";
     if (run.fault.empty() && run.deepest > 0.95) run.fault = "strands are through each other";
+    if (progress && run.steps % kWildTold == 0) progress(run);
   }
   return run;
 }

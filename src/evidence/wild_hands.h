@@ -5,6 +5,7 @@
 // needle joined, strands not through each other, thread and needle in the tissue only where a track leads (wall_watch.h). Test: wild_hands_test; `filum bench --wild`.
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,10 @@ struct WildRun {
   int buried = 0;             // most steps on end in which a place of thread or needle was deep in the tissue without a track
 };
 
-/// One run from `first`, a state of this world; ends at the first fault.
-WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps);
+using WildProgress = std::function<void(const WildRun&)>;
+
+/// One run from `first`, a state of this world; ends at the first fault. `progress` hears of it every kWildTold steps.
+inline constexpr int kWildTold = 500;
+WildRun run_wild(World& world, const State& first, std::uint64_t seed, int steps, const WildProgress& progress = {});
 
 }  // namespace filum

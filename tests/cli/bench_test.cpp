@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "program_call.h"
 
 namespace filum {
@@ -32,9 +34,21 @@ TEST(Bench, WildHandsAreCountedByTask) {
   EXPECT_TRUE(d["wild"][0]["faults"].empty());
 }
 
+TEST(Bench, WildHandsBeginAtAnySeed) {
+  const auto fastest = [](const std::string& first, const std::string& seeds) {
+    const auto d = call({"bench", "--json", "--wild", seeds, "--wild-first", first, "--wild-seconds", "0.1", "knot-throw"}).json();
+    EXPECT_EQ(d["wild"][0]["first_seed"].dump(), first);
+    return d["wild"][0]["fastest_m_per_s"].get<double>();
+  };
+  const double one = fastest("1", "1"), two = fastest("2", "1");
+  EXPECT_NE(one, two);
+  EXPECT_EQ(fastest("1", "2"), std::max(one, two));
+}
+
 TEST(Bench, WhatItDoesNotKnowIsRefused) {
   expect_refused({"bench", "--json", "warp-drive"}, {"found warp-drive", "expected", "rod-100"});
   expect_refused({"bench", "--wild", "0"}, {"--wild"});
+  expect_refused({"bench", "--wild", "1", "--wild-first", "0"}, {"--wild-first"});
   expect_refused({"bench", "--wild", "1", "--wild-sewn", "3", "grasp-transfer"}, {"--wild-sewn", "found task grasp-transfer", "two vessels"});
   expect_refused({"bench", "--json", "--wild", "1", "no-such-task"}, {"found no-such-task", "knot-square"});
 }

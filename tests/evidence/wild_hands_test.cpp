@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "collision/segment_distance.h"
 #include "world/state.h"
@@ -53,8 +54,10 @@ TEST(WildHands, EveryOtherTask) {
 /// Thread is caught between two tools that hands go on driving into each other: held where they were, they press it no further (else: through itself in step 505).
 TEST(WildHands, ToolsDoNotPressStrandsThroughEachOther) {
   World world(load_model(FILUM_SOURCE_DIR, "end-to-side"));
-  const WildRun run = run_wild(world, world.state(), 3, 520);
+  std::vector<std::uint64_t> told;
+  const WildRun run = run_wild(world, world.state(), 3, 520, [&](const WildRun& r) { told.push_back(r.steps); });
   EXPECT_EQ(run.fault, "");
+  EXPECT_EQ(told, std::vector<std::uint64_t>{kWildTold});
   EXPECT_LT(run.deepest, 0.5);
 }
 
