@@ -54,6 +54,8 @@ bool changes_the_scene(const std::string& damage) {
   return false;
 }
 
+double dialled(const YamlNode& dial) { return dial.number("stiffness", Range::between(0.1, 10.0)); }
+
 Setup setup_of(const RecordingReader& recording, const std::string& folder) {
   for (const std::string& one : recording.damaged_texts())
     if (changes_the_scene(one)) refuse_damaged(recording, {one});
@@ -61,7 +63,7 @@ Setup setup_of(const RecordingReader& recording, const std::string& folder) {
   const std::string model = folder + "/" + kModelOverride;
   const std::string dial = folder + "/" + kDial;
   double stiffness = 1.0;
-  if (fs::exists(dial)) stiffness = YamlNode::load(dial).number("stiffness", Range::between(0.1, 10.0));
+  if (fs::exists(dial)) stiffness = dialled(YamlNode::load(dial));
   return load_setup(folder, recording.meta().task, fs::exists(model) ? model : "", stiffness);
 }
 
@@ -103,6 +105,17 @@ std::unique_ptr<Recorder> make_recorder(const std::string& file, const Setup& se
     options.sources.push_back({beside + brain->mesh_name, read_whole(brain->mesh_file)});
   }
   return std::make_unique<Recorder>(std::move(options));
+}
+
+Conditions read_conditions(const RecordingReader& recording) {
+  const std::string& input = recording.meta().input;
+  Conditions made;
+  made.input = input.starts_with("demonstrat") ? "demo" : input == "pointer" ? "pointer" : "device";
+  for (const SourceFile& source : recording.sources())
+    if (source.path == kDial) made.stiffness = dialled(YamlNode::parse(source.text, kDial));
+  RecordCursor<EventRecord> events = recording.events();
+  if (EventRecord first; events.next_readable(first)) made.exam = first.name == "exam";
+  return made;
 }
 
 RecordedSetup::RecordedSetup(const RecordingReader& recording) : folder_(new_folder()) {

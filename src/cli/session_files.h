@@ -38,6 +38,14 @@ class RecordedSetup {
   Setup setup_;
 };
 
+/// Under which a session was made, as its recording tells.
+struct Conditions {
+  std::string input;       // pointer, demo, device; empty: not known
+  bool exam = false;       // without guides, hints and overlays
+  double stiffness = 1.0;  // of the brain, times the model's
+};
+Conditions read_conditions(const RecordingReader& recording);
+
 struct Rescored {
   Result result;
   ReplayResult replay;

@@ -17,6 +17,7 @@
 #include "cli/knot_pull.h"
 #include "cli/live_session.h"
 #include "cli/rating_desk.h"
+#include "cli/session_files.h"
 #include "cli/replay_session.h"
 #include "cli/tool_stream.h"
 #include "cli/trainer_lab.h"
@@ -66,7 +67,7 @@ class Trainer final : public ServerHost {
   void open_store();
   std::optional<std::string> recording_of(const std::string& session);
   std::optional<std::string> result_of(const std::string& session);
-  const std::string& input_of(const std::string& session);
+  Conditions conditions_of(const std::string& session);
   void carry_out(const ClientMessage& message);
   void look_after();
   void start_task(const StartMessage& start);
@@ -88,7 +89,7 @@ class Trainer final : public ServerHost {
   std::optional<Store> store_;
   std::string store_warning_;
   std::optional<RatingDesk> desk_;      // used by the server's thread only; none without a store
-  std::map<std::string, std::string> inputs_;  // by session, as its recording says; guarded by store_mutex_
+  std::map<std::string, Conditions> conditions_;  // by session, as its recording says; guarded by store_mutex_
   std::map<std::string, std::string> titles_;  // by task; constant
   TrainerLab lab_;
   std::unique_ptr<Server> server_;

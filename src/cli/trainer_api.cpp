@@ -13,11 +13,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json info_json(const StoreEntry& e, const std::string& title, const std::string& input) {
+Json info_json(const StoreEntry& e, const std::string& title, const Conditions& made) {
   return {{"id", e.id},
           {"task", e.task},
           {"title", title},
-          {"input", input},
+          {"input", made.input},
+          {"exam", made.exam},
+          {"stiffness", made.stiffness},
           {"code", e.participant},
           {"started", e.started_utc},
           {"seconds", e.seconds},
@@ -28,16 +30,17 @@ Json info_json(const StoreEntry& e, const std::string& title, const std::string&
 
 }  // namespace
 
-/// Where the poses came from, in one word, from what the recording says of it; empty if it cannot be read. A recording is opened for it once.
-const std::string& Trainer::input_of(const std::string& session) {
-  const auto known = inputs_.find(session);
-  if (known != inputs_.end()) return known->second;
-  static const std::string unknown;
+/// From what the recording says of it; of one that cannot be read nothing is known. A recording that has ended is opened for it once.
+Conditions Trainer::conditions_of(const std::string& session) {
+  const auto known = conditions_.find(session);
+  if (known != conditions_.end()) return known->second;
   try {
-    const std::string input = RecordingReader(store_->file_of(session)).meta().input;
-    return inputs_[session] = input.starts_with("demonstrat") ? "demo" : input == "pointer" ? "pointer" : "device";
+    const RecordingReader recording(store_->file_of(session));
+    const Conditions made = read_conditions(recording);
+    if (recording.finished()) conditions_[session] = made;
+    return made;
   } catch (const InputError&) {
-    return unknown;  // damaged: the store's check says so
+    return {};  // damaged: the store's check says so
   }
 }
 
@@ -80,7 +83,7 @@ std::optional<std::string> Trainer::api(std::string_view path) {
   if (path.empty()) {
     Json list = Json::array();
     if (store_) {
-      for (const StoreEntry& entry : store_->list()) list.push_back(info_json(entry, title_of(entry.task), input_of(entry.id)));
+      for (const StoreEntry& entry : store_->list()) list.push_back(info_json(entry, title_of(entry.task), conditions_of(entry.id)));
     }
     return json_text({{"sessions", list}});
   }
@@ -97,7 +100,7 @@ std::optional<std::string> Trainer::api(std::string_view path) {
   } catch (const InputError&) {
     // A session that is running or damaged has no result to show; the store's check names the damage.
   }
-  if (!series) return json_text({{"session", info_json(*entry, title_of(entry->task), input_of(entry->id))}, {"result", result}});
+  if (!series) return json_text({{"session", info_json(*entry, title_of(entry->task), conditions_of(entry->id))}, {"result", result}});
   if (result.is_null()) return json_text({{"series", Json::array()}, {"paths", Json::array()}});
   return json_text({{"series", result["series"]}, {"paths", result["paths"]}});
 }

@@ -81,6 +81,15 @@ double stored_seconds(const std::string& file) {
   }
 }
 
+/// Nothing of one that cannot be read: check() names the damage.
+std::optional<StoreEntry> stored_entry(const std::string& file, const std::string& id) {
+  try {
+    return entry_of(RecordingReader(file), id);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 StoreProblem damaged(const std::string& id, const std::string& what) {
   return {id, what, "keep the file: what stands beside the damage can be read"};
 }
@@ -180,11 +189,13 @@ struct Store::Impl {
     return entries;
   }
 
-  /// Sessions that a crash cut short, or that still run: their lengths as stored by now. finish() corrects the latter.
-  void measure_unfinished() {
-    for (const StoreEntry& entry : select("finished = 0 AND seconds = 0 AND :a = '' AND :b = ''", "", "")) {
-      const double seconds = stored_seconds((fs::path(folder) / (entry.id + kRecordingSuffix)).string());
-      if (seconds > 0.0) *sql << "UPDATE filum_sessions SET seconds = :s WHERE id = :id AND finished = 0", soci::use(seconds), soci::use(entry.id);
+  /// Sessions that a crash cut short, that still run, or that another program has ended since they were entered: as stored by now.
+  void update_unfinished() {
+    for (const StoreEntry& known : select("finished = 0 AND :a = '' AND :b = ''", "", "")) {
+      const auto entry = stored_entry((fs::path(folder) / (known.id + kRecordingSuffix)).string(), known.id);
+      if (!entry || (!entry->finished && entry->seconds == known.seconds)) continue;
+      *sql << "DELETE FROM filum_sessions WHERE id = :id AND finished = 0", soci::use(known.id);
+      put_once(*entry);
     }
   }
 
@@ -242,7 +253,7 @@ Store::Store(const std::string& folder, const std::string& index_connection)
     damaged = true;
   }
   if (!damaged) {
-    impl_->guarded([&] { impl_->measure_unfinished(); });
+    impl_->guarded([&] { impl_->update_unfinished(); });
     adopt();
     return;
   }

@@ -70,6 +70,14 @@ double over_stitches(const NeedleReport& r, bool most, Value value) {
   return found;
 }
 
+/// As the lapse has it: of every bite that holds, a lone one as well.
+double widest_bite(const NeedleReport& r) {
+  double found = kNaN;
+  for (const Stitch& s : r.stitches)
+    if (!s.lost) found = std::fmax(found, std::fmax(s.bite[0], s.bite[1]));
+  return found;
+}
+
 /// Share of the stitches that are tied with a knot that holds in nylon: square, surgeon's, three throws.
 double secure_share(const NeedleReport& r) {
   double whole = 0.0, tied = 0.0;
@@ -150,7 +158,7 @@ double scale_value(const std::string& measure, const NeedleReport& r) {
   if (measure == "back-walls") return count_of(r.lapses, "back-wall");
   if (is_lapse(measure)) return lapse_count(measure, r);
   if (measure == "spacing-variation") return variation(r.spacings);
-  if (measure == "bite-widest") return over_stitches(r, true, [](const Stitch& s) { return std::max(s.bite[0], s.bite[1]); }) / r.thickness;
+  if (measure == "bite-widest") return widest_bite(r) / r.thickness;
   if (measure == "bite-narrowest") return over_stitches(r, false, [](const Stitch& s) { return std::min(s.bite[0], s.bite[1]); }) / r.thickness;
   if (measure == "bite-inequality") return over_stitches(r, true, [](const Stitch& s) { return std::abs(s.bite[0] - s.bite[1]) / std::max(s.bite[0], s.bite[1]); });
   if (measure == "knots-secure") return secure_share(r);

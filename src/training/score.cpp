@@ -141,7 +141,7 @@ void score_knot(const Task& task, const Result& r, ScoreItem& item) {
   item.text = r.knot.knot_class;
   const bool right = accepted(task, r.knot.knot_class);
   item.points = right && r.knot.encloses_post ? item.max_points : 0.0;
-  item.why = "the thread's shape is a ";
+  item.why = "the thread's shape: ";
   item.why += r.knot.knot_class;
   if (!r.knot.composition.empty()) item.why += " (" + r.knot.composition + ")";
   item.why += right ? ", as asked" : ", asked for was " + joined(task.accept);
@@ -365,8 +365,9 @@ void add_curves(const SeriesLog& log, const SceneDescription& scene, Result& res
   for (int t = 0; t < log.n_tools(); ++t) {
     const std::string& name = scene.tools[static_cast<std::size_t>(t)].name;
     const ToolLog& tool = log.tool(t);
-    result.series.push_back(curve("speed_" + name, "Speed of " + name, "m/s", log.time(),
-                                  low_pass(speed_of(tool.path(), kMetricRate), kMetricRate, 6.0)));
+    std::vector<double> speed = low_pass(speed_of(tool.path(), kMetricRate), kMetricRate, 6.0);
+    for (double& v : speed) v = std::max(v, 0.0);  // the filter swings below
+    result.series.push_back(curve("speed_" + name, "Speed of " + name, "m/s", log.time(), speed));
     result.series.push_back(curve("grip_force_" + name, "Squeeze of " + name, "N", log.time(), tool.grip));
     result.series.push_back(
         curve("thread_force_" + name, "Pull of the thread on " + name, "N", log.time(), tool.thread_force));

@@ -56,8 +56,9 @@ void TaskSession::take_events(const Observation& o) {
 }
 
 void TaskSession::take_sample(const Observation& o) {
+  constexpr double kComing = 0.1;  // [s], in which instruments are drawn to where the hands that hold them are: no movement of theirs
   tension_ = std::max(tension_, largest_tension(o));
-  const auto due = static_cast<double>(log_.size()) / kMetricRate;
+  const auto due = kComing + static_cast<double>(log_.size()) / kMetricRate;
   if (elapsed_ + 1e-9 < due) return;
   log_.add(o, tension_);
   tension_ = 0.0;

@@ -27,8 +27,6 @@ NeedleScene::NeedleScene(const Model& model) : model_(model), body_(model.needle
   options_.gravity = model.step.gravity;
   options_.sheet = model.description.floor_height;
   thread_between_.reserve(kGraspPointsPerTool);
-  moved_.reserve(model.instruments.size());
-  held_.reserve(model.instruments.size());
   if (!model.description.has_post) body_.bars = surroundings(model).bars;  // a post it does not touch
   for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].pads = model.instruments[i].pads;
   if (model.vessel) tissue_ = std::make_unique<VesselScene>(*model.vessel, body_.shape(), model.description.capacity);
@@ -194,35 +192,23 @@ double NeedleScene::overload(const State& s, const RodStepSummary& thread) const
   return std::max({thread.residual / model_.thread.strength, apart(s) / kHeldApart, through / kSinks});
 }
 
-void NeedleScene::put_tools(State& s, ImplicitRod& rod, const std::vector<InstrumentState>& there) noexcept {
-  for (std::size_t i = 0; i < body_.tools.size(); ++i) {
-    s.instruments[i] = there[i];
-    rod.obstacles.bodies[i].X_end = rod.grasps.tools[i].X_now = body_.tools[i].X_end = there[i].X_WT;
-  }
-}
-
-/// Where the instruments' ways overload thread or tissue they stand still, but for those whose jaws have just taken something where they are; unless that is no better:
-/// a hand may always let go of what it presses.
-RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept {
+/// Where the instruments' ways overload thread or tissue they stand still, unless that is no better.
+RodStepSummary NeedleScene::step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o, HeldTools& tools) noexcept {
   keep(s);
   before_thread(s, rod);
   RodStepSummary thread = attempt(s, rod, o);
   const double moved = overload(s, thread);
   if (moved <= 1.0) return thread;
-  const auto again = [&](const std::vector<InstrumentState>& there) {
+  const auto again = [&](bool held) {
     take_back(s);
-    put_tools(s, rod, there);
+    tools.put(s, rod, held);
+    for (std::size_t i = 0; i < body_.tools.size(); ++i) body_.tools[i].X_end = s.instruments[i].X_WT;
     hold_swage(s, rod, s.needle.in_hand() ? s.needle.pull : Vec3::Zero());
     return attempt(s, rod, o);
   };
-  moved_ = held_ = s.instruments;
-  for (std::size_t i = 0; i < held_.size(); ++i) {
-    if (armed_before_[i] != 0 && s.armed[i] == 0) continue;
-    held_[i].X_WT = rod.obstacles.bodies[i].X_start;
-    held_[i].v = held_[i].w = Vec3::Zero();
-  }
-  thread = again(held_);
-  return overload(s, thread) < moved ? thread : again(moved_);
+  tools.find(s, rod.obstacles.bodies);
+  thread = again(true);
+  return overload(s, thread) < moved ? thread : again(false);
 }
 
 void NeedleScene::after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept {

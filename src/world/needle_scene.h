@@ -4,14 +4,14 @@
 // A step of thread and needle together: the needle is moved as if it had no thread, which tells how firmly its swage is held there;
 // the thread is stepped with its end held just so (rod_tether.h); then the needle follows the thread's end. Where the needle cannot follow, because
 // what was seen ahead held for another pull only (a wire that turns between the pads gives way without end), the step is taken back and made again.
-// A hand is no vise: a step in which instruments press thread harder than it bears, tear it off its needle or through tissue, is made again with the instruments held where
-// they were, if that is less (a proxy of the hand that what it meets stops: Ruspini, Kolarov & Khatib, SIGGRAPH 1997).
+// So is one in which instruments press thread harder than it bears, tear it off its needle or through tissue, with the instruments held where they were (held_tools.h).
 
 #include <memory>
 
 #include "physics/implicit_rod.h"
 #include "physics/needle.h"
 #include "world/fresh_suture.h"
+#include "world/held_tools.h"
 #include "world/model.h"
 #include "world/observation.h"
 #include "world/state.h"
@@ -34,13 +34,12 @@ class NeedleScene {
   void limit_jaws(const State& s, std::vector<InstrumentCommand>& commands) const noexcept;
   /// After the instruments have moved from `from`: none has gone through tissue.
   void hold_back(State& s, const std::vector<ObstacleBody>& from) noexcept {
-    armed_before_ = s.armed;
     if (tissue_) tissue_->hold_back(s.tissue, model_.instruments, from, s.instruments);
   }
   /// After the instruments have moved from `from`: tells the needle where they are, takes it, lets it go.
   void meet_tools(State& s, const std::vector<ObstacleBody>& from, Observation& o) noexcept;
   /// Thread and needle, joined; what they did to each other is in `s` and `rod`.
-  RodStepSummary step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept;
+  RodStepSummary step_thread(State& s, ImplicitRod& rod, const RodStepOptions& o, HeldTools& tools) noexcept;
   /// The tissue's turn. Adds the needle's pull to the forces on the tools.
   void after_thread(State& s, ImplicitRod& rod, Observation& o) noexcept;
   void observe(const State& s, Observation& o) const noexcept;
@@ -59,7 +58,6 @@ class NeedleScene {
   bool misled(const State& s, const ImplicitRod& rod) const noexcept;
   RodStepSummary attempt(State& s, ImplicitRod& rod, const RodStepOptions& o) noexcept;
   double overload(const State& s, const RodStepSummary& thread) const noexcept;
-  void put_tools(State& s, ImplicitRod& rod, const std::vector<InstrumentState>& there) noexcept;
   void keep(const State& s) noexcept;
   void take_back(State& s) const noexcept;
 
@@ -73,8 +71,6 @@ class NeedleScene {
   RodState thread_before_;               // of the present step, for when it is made again
   RodMemory memory_before_;
   NeedleState needle_before_;
-  decltype(State::armed) armed_before_{};  // jaws that could take hold when the step began
-  std::vector<InstrumentState> moved_, held_;  // the instruments at the end of their ways, and where they were
   std::vector<GraspPoint> thread_between_;  // jaws, at most so many as they hold
 };
 

@@ -10,6 +10,7 @@
 #include "world/clamp_bars.h"
 #include "world/fixtures.h"
 #include "world/fresh_suture.h"
+#include "world/held_tools.h"
 #include "world/model.h"
 #include "world/needle_scene.h"
 #include "world/observe.h"
@@ -48,6 +49,9 @@ struct World::Impl {
   RodStepSummary solver;
   std::unique_ptr<BrainScene> brain;  // in scenes of brain retraction: then it takes the whole step
   std::unique_ptr<NeedleScene> needle;  // in scenes with one
+  HeldTools held_tools;
+  RodState thread_before;               // of the present step of a thread without needle, for when it is made again
+  RodMemory memory_before;
   std::unique_ptr<ClampBars> clamp;     // that holds two vessels
   std::vector<RoundBar> still, around;  // bars that instruments touch: those that stand still, and the clamp's besides
   Observation observation;
@@ -60,6 +64,7 @@ struct World::Impl {
   void take_or_cut(int tool) noexcept;
   void ignore_held_thread() noexcept;
   void step_thread() noexcept;
+  RodStepSummary step_bare_thread() noexcept;
   void feel_thread() noexcept;
   void stop_at_thread() noexcept;
   void step_pellets() noexcept;
@@ -86,7 +91,8 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
     : model(std::move(m)),
       rod(model->thread, model->contact, model->description.capacity, model->description.n_tools),
       instruments(model->instruments_touch ? Instruments(model->instruments, surroundings(*model)) : Instruments(model->instruments)),
-      pellets(model->pellets, model->description.floor_height) {
+      pellets(model->pellets, model->description.floor_height),
+      held_tools(model->instruments.size()) {
   if (model->brain) {
     start_brain();
     return;
@@ -94,6 +100,8 @@ World::Impl::Impl(std::shared_ptr<const Model> m)
   const auto n_tools = model->instruments.size();
   state.thread = first_thread(*model);
   state.memory = rod.make_memory();
+  memory_before = rod.make_memory();  // a copy would not keep its room
+  thread_before = state.thread;
   commands.resize(n_tools);
   for (std::size_t i = 0; i < n_tools; ++i) {
     InstrumentState s;
@@ -204,6 +212,7 @@ void World::Impl::move_instruments() noexcept {
   const long troubles = ode_troubles();
   instruments.step(state.instruments, commands, state.force, state.torque, model->step.dt);
   if (ode_troubles() != troubles) event("solver-trouble", -1, 0.0, "N");
+  held_tools.note(state);
   if (needle) needle->hold_back(state, rod.obstacles.bodies);
   for (std::size_t i = 0; i < commands.size(); ++i) {
     ObstacleBody& body = rod.obstacles.bodies[i];
@@ -282,7 +291,7 @@ void World::Impl::step_thread() noexcept {
   let_go_of_gaps(state.thread, state.memory.grasps);
   std::array<int, 3> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) before[i] = held_by(static_cast<int>(i));
-  solver = needle ? needle->step_thread(state, rod, model->step) : rod.step(state.thread, state.memory, model->step);
+  solver = needle ? needle->step_thread(state, rod, model->step, held_tools) : step_bare_thread();
   if (!solver.sound || solver.crowded || (!solver.converged && solver.residual > kTrouble)) event("solver-trouble", -1, solver.residual, "N");
   feel_thread();
   stop_at_thread();
@@ -291,6 +300,23 @@ void World::Impl::step_thread() noexcept {
       event("drop", static_cast<int>(i), state.instruments[i].grip_force, "N");
   }
   if (needle) needle->after_thread(state, rod, observation);
+}
+
+/// Where the instruments' ways press it harder than it bears they stand still, unless that is no better.
+RodStepSummary World::Impl::step_bare_thread() noexcept {
+  thread_before = state.thread;
+  memory_before = state.memory;
+  const RodStepSummary moved = rod.step(state.thread, state.memory, model->step);
+  if (moved.residual <= model->thread.strength) return moved;
+  const auto again = [&](bool held) {
+    state.thread = thread_before;
+    state.memory = memory_before;
+    held_tools.put(state, rod, held);
+    return rod.step(state.thread, state.memory, model->step);
+  };
+  held_tools.find(state, rod.obstacles.bodies);
+  const RodStepSummary held = again(true);
+  return held.residual < moved.residual ? held : again(false);
 }
 
 /// A force that no thread could bear is that of a step which found no balance: given in full it would throw the tool.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 
@@ -71,6 +72,19 @@ TEST(RatingScale, TheWorstCriterionDecides) {
   r.stitches[0].tail = 4e-3;
   EXPECT_EQ(points(r), (Points{0, 0, 0, 0, 0}));
   EXPECT_NEAR(*estimates(mars10(), r)[1].value, 0.30 / 0.40 * std::sqrt(2.0 / 8.0), 1e-9);
+}
+
+/// As the lapse does: not only of those that join both sides, not of those that came out.
+TEST(RatingScale, EveryBiteThatHoldsCountsForItsSize) {
+  NeedleReport r = good();
+  Stitch lone;
+  lone.bite[0] = 0.33e-3;
+  lone.bite[1] = std::numeric_limits<double>::quiet_NaN();
+  r.stitches.push_back(lone);
+  EXPECT_NEAR(scale_value("bite-widest", r), 3.3, 1e-9);
+  EXPECT_EQ(points(r)[2], 1);
+  r.stitches.back().lost = true;
+  EXPECT_NEAR(scale_value("bite-widest", r), 2.5, 1e-9);
 }
 
 TEST(RatingScale, WhatCouldNotBeMeasuredIsNotMarked) {
