@@ -4,6 +4,7 @@ import type { Scale } from "../messages";
 import { ratings, type RatingStatus } from "../net/api";
 import { h } from "./dom";
 import { formsHint, stitchHint } from "./rating_words";
+import { askBeforeReplays } from "./running_task";
 import { ScaleForm } from "./scale_form";
 
 export class RatePage implements Page {
@@ -13,7 +14,8 @@ export class RatePage implements Page {
   private forms: ScaleForm[] = [];
   private status: RatingStatus | null = null;
 
-  constructor(_app: App, private readonly id: string) {
+  constructor(app: App, private readonly id: string) {
+    askBeforeReplays(app, this.element);
     this.element.append(h("h1", {}, "Rate"), h("p", { role: "status" }, "Loading…"));
     void this.load();
   }

@@ -10,6 +10,7 @@ import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
 import { chartsOf, drawChart } from "./plots";
 import { better } from "./rating_words";
+import { askBeforeReplays, goToReplay } from "./running_task";
 import { clampSection, factorSection, handlingSection, joinSection, stitchSection } from "./stitch_panel";
 
 /// Why it is not passed. Results of older sessions may not say.
@@ -24,6 +25,7 @@ export class ResultPage implements Page {
   private shown: Result | null = null;
 
   constructor(private readonly app: App, private readonly id: string) {
+    askBeforeReplays(app, this.element);
     if (id) void this.load();
     else if (app.result) this.show(app.result);
     else this.element.append(h("h1", {}, "Result"), h("p", {}, "There is no result yet."), h("a", { class: "button", href: "#/" }, "Choose a task"));
@@ -139,6 +141,6 @@ export class ResultPage implements Page {
 
   private pick(result: Result, time: number): void {
     const id = this.id || result.session;
-    if (id) this.app.go(`#/replay/${encodeURIComponent(id)}/${time.toFixed(2)}`);
+    if (id) void goToReplay(this.app, this.element, `#/replay/${encodeURIComponent(id)}/${time.toFixed(2)}`);
   }
 }

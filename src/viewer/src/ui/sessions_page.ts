@@ -4,6 +4,7 @@ import type { SessionInfo } from "../messages";
 import { sessions } from "../net/api";
 import { h } from "./dom";
 import { clock, day } from "./format";
+import { askBeforeReplays } from "./running_task";
 
 export const kInputNames: Record<string, string> = { pointer: "pointer", demo: "demonstration", device: "attached instruments" };
 
@@ -11,7 +12,8 @@ export class SessionsPage implements Page {
   readonly title = "Sessions";
   readonly element = h("div", { class: "page sessions" });
 
-  constructor(_app: App) {
+  constructor(app: App) {
+    askBeforeReplays(app, this.element);
     this.element.append(h("h1", {}, "Sessions"), h("p", { role: "status" }, "Loading…"));
     void this.load();
   }
