@@ -23,16 +23,23 @@ export class ResultPage implements Page {
   readonly element = h("div", { class: "page result" });
   private cleanup: (() => void)[] = [];
   private shown: Result | null = null;
+  private demonstration = false;
 
   constructor(private readonly app: App, private readonly id: string) {
     askBeforeReplays(app, this.element);
     if (id) void this.load();
-    else if (app.result) this.show(app.result);
+    else if (app.result) this.showLast(app.result);
     else this.element.append(h("h1", {}, "Result"), h("p", {}, "There is no result yet."), h("a", { class: "button", href: "#/" }, "Choose a task"));
   }
 
   onmessage(message: ServerMessage): void {
-    if (message.type === "result" && !this.id && message !== this.shown) this.show(message);
+    if (message.type === "result" && !this.id && message !== this.shown) this.showLast(message);
+  }
+
+  /// Of the task that has just ended.
+  private showLast(result: Result): void {
+    this.demonstration = this.app.session?.input === "demo";
+    this.show(result);
   }
 
   dispose(): void { for (const one of this.cleanup) one(); this.cleanup = []; }
@@ -41,6 +48,7 @@ export class ResultPage implements Page {
     this.element.replaceChildren(h("p", { role: "status" }, "Loading…"));
     try {
       const { session, result } = await fetchSession(this.id);
+      this.demonstration = session.input === "demo";
       if (result) this.show(result);
       else this.element.replaceChildren(h("h1", {}, session.title), h("p", {}, "This session was not scored."), this.replayLink(this.id));
     } catch (error) {
@@ -57,12 +65,10 @@ export class ResultPage implements Page {
     this.shown = result;
     const id = this.id || result.session;
     const share = result.score.max_total > 0 ? result.score.total / result.score.max_total : 0;
-    const verdict = h("div", { class: `verdict ${result.passed ? "pass" : "fail"}` }, result.passed ? icon.pass() : icon.fail(),
-      h("span", {}, result.passed ? "Passed" : result.finished ? "Not passed" : "Not finished"));
     const total = h("div", { class: "total" }, h("span", { class: "points" }, result.score.total.toFixed(0)), h("span", { class: "of" }, `of ${result.score.max_total.toFixed(0)} points`),
       h("div", { class: "track", "aria-hidden": "true" }, h("div", { class: "fill", style: `transform:scaleX(${share.toFixed(3)})` })));
     this.element.replaceChildren(
-      h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${clock(result.seconds)}`)), verdict, total,
+      h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${clock(result.seconds)}`)), this.verdict(result), total,
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
       ...(result.passed ? [] : [reasons(result.verdict ?? [])]),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
@@ -74,6 +80,12 @@ export class ResultPage implements Page {
     const panel = analysisPanel(id);
     this.element.append(panel.element);
     this.cleanup.push(panel.dispose);
+  }
+
+  private verdict(result: Result): HTMLElement {
+    if (this.demonstration) return h("div", { class: "verdict shown" }, icon.info(), h("span", {}, "Demonstration"));
+    return h("div", { class: `verdict ${result.passed ? "pass" : "fail"}` }, result.passed ? icon.pass() : icon.fail(),
+      h("span", {}, result.passed ? "Passed" : result.finished ? "Not passed" : "Not finished"));
   }
 
   private scoreTable(result: Result): HTMLElement {

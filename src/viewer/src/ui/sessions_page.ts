@@ -35,11 +35,16 @@ export function sessionTable(list: SessionInfo[]): HTMLElement {
     h("tbody", {}, ...list.map(row))));
 }
 
+function verdictOf(one: SessionInfo): string {
+  if (one.passed === null) return one.finished ? "not scored" : "cut short";
+  if (one.input === "demo") return "demonstration"; // nobody passed
+  return one.passed ? "✓ passed" : "✕ not passed";
+}
+
 function row(one: SessionInfo): HTMLElement {
-  const verdict = one.passed === null ? (one.finished ? "not scored" : "cut short") : one.passed ? "✓ passed" : "✕ not passed";
   const id = encodeURIComponent(one.id), title = one.title || one.task;
   return h("tr", { "data-session": one.id }, h("td", {}, day(one.started)), h("th", { scope: "row" }, title), h("td", {}, kInputNames[one.input] ?? one.input), h("td", {}, one.code),
-    h("td", { class: "number" }, clock(one.seconds)), h("td", { class: "number" }, one.total === null ? "–" : one.total.toFixed(0)), h("td", {}, verdict),
+    h("td", { class: "number" }, clock(one.seconds)), h("td", { class: "number" }, one.total === null ? "–" : one.total.toFixed(0)), h("td", {}, verdictOf(one)),
     h("td", { class: "links" }, h("a", { class: "button", href: `#/replay/${id}`, "aria-label": `Replay ${title}` }, "Replay"),
       one.total === null ? null : h("a", { class: "button", href: `#/result/${id}`, "aria-label": `Result of ${title}` }, "Result")));
 }

@@ -106,7 +106,7 @@ export class TasksPage implements Page {
       const input = (form.querySelector("input[name=input]:checked") as HTMLInputElement | null)?.value as InputKind | undefined;
       if (!input) { setText(trouble, "Choose how the instruments are moved."); return; }
       if (!code.checkValidity()) { setText(trouble, "The code may hold letters, digits, - and _ only."); return; }
-      void this.begin({ type: "start", task: task.name, input, ...(code.value ? { code: code.value } : {}), ...(task.dial && stiffness() !== 1 ? { stiffness: stiffness() } : {}), ...(exam.checked ? { exam: true } : {}), ...(others ? { take_over: over.checked } : {}) }, trouble);
+      void this.begin({ type: "start", task: task.name, input, ...(code.value && !code.disabled ? { code: code.value } : {}), ...(task.dial && stiffness() !== 1 ? { stiffness: stiffness() } : {}), ...(exam.checked ? { exam: true } : {}), ...(others ? { take_over: over.checked } : {}) }, trouble);
     } },
       h("fieldset", {}, h("legend", {}, "Who moves the instruments?"), ...this.choices(task)),
       h("label", { class: "line-input" }, "Trainee code (no name; may stay empty)", code),
@@ -116,6 +116,10 @@ export class TasksPage implements Page {
       trouble,
       h("div", { class: "buttons" }, h("button", { type: "button", class: "quietbutton", onclick: () => dialog.close() }, "Cancel"),
         h("button", { type: "submit", class: "primary" }, "Start")));
+    const demo = form.querySelector<HTMLInputElement>("input[value=demo]")!; // shown to whoever watches, done by nobody
+    const codeOff = () => { code.disabled = demo.checked; };
+    form.addEventListener("change", codeOff);
+    codeOff();
     dialog.replaceChildren(h("div", { class: "starthead" }, taskPicture(task.picture, task.title),
       h("div", {}, h("h1", { id: "start-title" }, task.title), h("p", {}, task.summary))), form);
     dialog.showModal();

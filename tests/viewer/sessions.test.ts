@@ -1,0 +1,45 @@
+import { ResultPage } from "@viewer/ui/result_page";
+import { sessionTable } from "@viewer/ui/sessions_page";
+import { TasksPage } from "@viewer/ui/tasks_page";
+import type { App } from "@viewer/app";
+import type { Result, SessionInfo } from "@viewer/messages";
+import { resultOf } from "./sample_frames.mjs";
+
+const info = { id: "s1", task: "knot-square", title: "Square knot", input: "pointer", code: "A17", started: "2026-11-22T01:00:00Z", seconds: 38, finished: true, passed: true, total: 89 } as SessionInfo;
+const result = resultOf("s1", 30) as unknown as Result;
+const task = { name: "knot-square", title: "Square knot", summary: "Tie it", chapter: "Knots", picture: "knot-square", shown: true, demonstration: false };
+let sent: Record<string, unknown>[] = [];
+const app = { session: null, result: null, replay: null, hello: { tasks: [task], inputs: ["pointer", "demo"] }, send: (message: Record<string, unknown>) => sent.push(message) > 0, go: () => {} } as unknown as App;
+const settled = () => new Promise((done) => setTimeout(done, 20));
+const startDialog = () => {
+  sent = [];
+  const page = new TasksPage(app).element;
+  document.body.replaceChildren(page);
+  (page.querySelector("button.card") as HTMLElement).click();
+  return page.querySelector("dialog.start")!;
+};
+const submit = async (dialog: Element) => { dialog.querySelector("form")!.dispatchEvent(new Event("submit", { cancelable: true })); await settled(); };
+
+beforeEach(() => { globalThis.fetch = (async (path: string) => new Response(JSON.stringify(path === "/api/sessions" ? { sessions: [] } : { session: { ...info, input: "demo" }, result }))) as unknown as typeof fetch; });
+
+describe("a demonstration", () => {
+  it("is started without a trainee's code, which stays for who moves the instruments", async () => {
+    const dialog = startDialog(), code = dialog.querySelector("input[type=text]") as HTMLInputElement;
+    code.value = "A17";
+    const choose = (input: string) => { const radio = dialog.querySelector(`input[value=${input}]`) as HTMLInputElement; radio.checked = true; radio.dispatchEvent(new Event("change", { bubbles: true })); };
+    choose("demo");
+    expect(code.disabled).toBe(true);
+    await submit(dialog);
+    choose("pointer");
+    expect(code.disabled).toBe(false);
+    await submit(dialog);
+    expect(sent).toEqual([{ type: "start", task: "knot-square", input: "demo" }, { type: "start", task: "knot-square", input: "pointer", code: "A17" }]);
+  });
+  it("is neither passed nor not passed, in the list and on the result", async () => {
+    const verdicts = [...sessionTable([info, { ...info, input: "demo" }, { ...info, input: "demo", passed: false }]).querySelectorAll("tbody tr")].map((row) => row.children[6].textContent);
+    expect(verdicts).toEqual(["✓ passed", "demonstration", "demonstration"]);
+    const stored = new ResultPage(app, "s1"), live = new ResultPage({ ...app, result, session: { input: "demo" } } as unknown as App, ""), own = new ResultPage({ ...app, result } as unknown as App, "");
+    await settled();
+    expect([stored, live, own].map((page) => page.element.querySelector(".verdict")!.textContent)).toEqual(["Demonstration", "Demonstration", "Passed"]);
+  });
+});
