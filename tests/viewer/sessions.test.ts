@@ -43,3 +43,13 @@ describe("a demonstration", () => {
     expect([stored, live, own].map((page) => page.element.querySelector(".verdict")!.textContent)).toEqual(["Demonstration", "Demonstration", "Passed"]);
   });
 });
+
+it("a curve without a unit that stayed at zero is left out, unless it is scored", () => {
+  const shown = (items: object[]) => {
+    const series = [{ name: "exposed", title: "Share of the target seen", unit: "-", time: [0, 1], value: [0, 0] }];
+    const page = new ResultPage({ ...app, result: { ...result, series, score: { ...result.score, items } } } as unknown as App, "");
+    return page.element.querySelector(".curves")!.textContent;
+  };
+  expect(shown([])).not.toContain("Share of the target seen");
+  expect(shown([{ name: "exposed", title: "Target seen", value: 0, unit: "-", points: 0, max_points: 25, why: "" }])).toContain("Share of the target seen");
+});

@@ -1,6 +1,6 @@
 // What the trainer made of a session: score with reasons, knot, curves, paths, events. Nothing is computed here.
 import type { App, Page } from "../app";
-import type { Result, Scale, ServerMessage } from "../messages";
+import type { Result, Scale, Series, ServerMessage } from "../messages";
 import { session as fetchSession } from "../net/api";
 import { analysisPanel } from "./analysis_panel";
 import { h } from "./dom";
@@ -8,7 +8,7 @@ import { clock, listed, kKnotTitles, kLaboratory, milliNewton, quantity, words, 
 import { PathPlot } from "./path_plot";
 import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
-import { chartsOf, drawChart } from "./plots";
+import { chartsOf, drawChart, type ChartData } from "./plots";
 import { better } from "./rating_words";
 import { askBeforeReplays, goToReplay } from "./running_task";
 import { clampSection, factorSection, handlingSection, joinSection, stitchSection } from "./stitch_panel";
@@ -16,6 +16,11 @@ import { clampSection, factorSection, handlingSection, joinSection, stitchSectio
 /// Why it is not passed. Results of older sessions may not say.
 function reasons(verdict: readonly string[]): HTMLElement {
   return h("ul", { class: "reasons", "aria-label": "Why it is not passed" }, ...verdict.map((why) => h("li", {}, why)));
+}
+
+/// A share that stayed at zero and is not scored: of something that the task does not have.
+function isIdle(one: Series, result: Result): boolean {
+  return one.unit === "-" && one.value.every((value) => !value) && !result.score.items.some((item) => item.name === one.name);
 }
 
 export class ResultPage implements Page {
@@ -129,10 +134,10 @@ export class ResultPage implements Page {
   private curves(result: Result): HTMLElement {
     const section = h("div", { class: "curves" });
     const charts = chartsOf(result.series.filter((one) => one.time.length > 1 && !(kLaboratory.includes(result.task) && /tension|thread/.test(one.name)) &&
-      !(result.pressure_map && /tension|thread|grip/.test(one.name)))); // blades have neither jaws nor thread
+      !(result.pressure_map && /tension|thread|grip/.test(one.name)) && !isIdle(one, result))); // blades have neither jaws nor thread
     for (const data of charts) {
       const holder = h("div", { class: "chart" });
-      section.append(h("section", { class: "panel" }, h("h2", {}, this.chartTitle(data.titles, data.unit)), holder));
+      section.append(h("section", { class: "panel" }, h("h2", {}, this.chartTitle(data)), holder));
       requestAnimationFrame(() => {
         if (this.shown !== result || !holder.isConnected) return;
         this.cleanup.push(drawChart(holder, data, result.events, (time) => this.pick(result, time)));
@@ -146,9 +151,10 @@ export class ResultPage implements Page {
     return section;
   }
 
-  private chartTitle(titles: string[], unit: string): string {
+  private chartTitle({ titles, unit, smaller }: ChartData): string {
     const known: Record<string, string> = { mN: "Forces", "mm/s": "Speed", mm: "Lengths", "°": "Angles" };
-    return `${known[unit] ?? (titles.length === 1 ? titles[0] : "Other curves")}${unit ? ` (${unit})` : ""}`;
+    const name = known[unit] && smaller ? `Smaller ${known[unit].toLowerCase()}` : known[unit] ?? (titles.length === 1 ? titles[0] : "Other curves");
+    return `${name}${unit ? ` (${unit})` : ""}`;
   }
 
   private pick(result: Result, time: number): void {
