@@ -109,6 +109,15 @@ describe("raters' forms", () => {
     expect(form.querySelector("[role=alert]")!.textContent).toContain("expected a code");
     expect(panel(page, "mars10").querySelector("[role=alert]")!.textContent).toBe("");
   });
+  it("explain [P] once it is shown", async () => {
+    scales = [{ ...mars, items: [{ ...mars.items[0], why: "Source: [P]" }] }];
+    const page = await opened(), note = () => [...page.querySelectorAll("p")].filter((one) => !one.hidden && one.textContent!.includes("not yet confirmed")).length;
+    expect(note()).toBe(0);
+    type(page, "R1");
+    choose(panel(page, "mars10"), "closure", 1);
+    await store(panel(page, "mars10"));
+    expect(note()).toBe(1);
+  });
   it("are one where the recording has one scale, and none where it has none", async () => {
     scales = [mars];
     expect((await opened()).querySelectorAll("form").length).toBe(1);
@@ -127,4 +136,9 @@ it("a result shows the estimates of every scale, says which way is better, and l
   expect(cards[0].textContent).toContain("1 of 2 points of the items that can be estimated; 1 of 2 items are left");
   expect(cards[1].textContent).toContain("1 of 2 points of the items that can be estimated; 0 of 2 items are left to a rater. Fewer points are better");
   expect(page.element.querySelectorAll('a[href="#/rate/s%201"]').length).toBe(1);
+});
+
+it("a result explains [P] once, where it shows it", () => {
+  const shown = (source: string) => new ResultPage({ result: { ...(resultOf("s 1", 30) as unknown as Result), scales: [{ ...mars, source }] }, session: null } as unknown as App, "").element.querySelectorAll(".proposal").length;
+  expect([shown("S"), shown("numbers [P]")]).toEqual([0, 1]);
 });

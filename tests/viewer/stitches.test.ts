@@ -1,4 +1,4 @@
-import { both, clampSection, handlingSection, joinSection, replayAt, StitchList, stitchSection, tails } from "@viewer/ui/stitch_panel";
+import { both, clampSection, handlingSection, joinSection, lapseValue, replayAt, StitchList, stitchSection, tails } from "@viewer/ui/stitch_panel";
 import { cividis } from "@viewer/scene/palette";
 import type { Leak, Result, Stitch } from "@viewer/messages";
 import { resultOf } from "./sample_frames.mjs";
@@ -19,6 +19,20 @@ describe("stitches of a result", () => {
     const links = [...stitchSection(result, "s 1")!.querySelectorAll(".lapses a")].map((link) => link.getAttribute("href"));
     expect(links).toEqual(["#/replay/s%201/20.00/stitch-2", "#/replay/s%201/11.25/stitch-1"]);
     expect(stitchSection(result, "s 1")!.querySelectorAll(".critical").length).toBe(1);
+  });
+  it("say in which order they stand", () => {
+    expect(stitchSection(result, null)!.textContent).toContain("In order along the cut.");
+    expect(stitchSection({ ...result, leak: {} as Leak }, null)!.textContent).toContain("In order round the vessel.");
+  });
+  it("say what the number of each lapse measures", () => {
+    const told = (name: string, value: number | null, unit: string) => lapseValue({ name, stitch: 0, time: 1, value, unit });
+    expect(told("back-wall", 175, "deg")).toBe("left the lumen 175° round from where it came in");
+    expect(told("unequal-spacing", 0.38, "-")).toBe("spaces vary by 38 % of their mean");
+    expect(told("loose-knot", 3.43e-3, "m")).toBe("3.43 mm of slack thread in the knot and loop");
+    expect(told("loose-knot", 1.5, "thicknesses")).toBe("edges 1.5 wall thicknesses apart");
+    expect(told("too-tight", 120, "N/m")).toBe("thread pulls 120 mN for each mm of bite");
+    expect(told("partial-thickness", 0.8, "share")).toBe("goes through 80 % of the wall");
+    expect([told("something-new", 2.5e-3, "m"), told("back-wall", null, "deg")]).toEqual(["2.50 mm", ""]);
   });
   it("tell the inner bites, the layers and the way to the next, where they are known", () => {
     const told = { ...result, stitches: result.stitches!.map((one, k) => ({ ...one, bites_inner_m: [2.5e-4, k === 0 ? 2.8e-4 : null], depth_layers: ["adventitia", "media"], spacing_m: k === 0 ? null : 1e-3 })) } as Result;

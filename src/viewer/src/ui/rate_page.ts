@@ -3,6 +3,7 @@ import type { App, Page } from "../app";
 import type { Scale } from "../messages";
 import { ratings, type RatingStatus } from "../net/api";
 import { h } from "./dom";
+import { kProposal } from "./format";
 import { formsHint, stitchHint } from "./rating_words";
 import { askBeforeReplays } from "./running_task";
 import { ScaleForm } from "./scale_form";
@@ -11,6 +12,7 @@ export class RatePage implements Page {
   readonly title = "Rate";
   readonly element = h("div", { class: "page rate" });
   private readonly code = h("input", { type: "text", maxlength: 32, pattern: "[A-Za-z0-9_\\-]+", autocomplete: "off", required: true, placeholder: "e.g. R3", name: "rater", onchange: () => this.showGiven() });
+  private readonly proposal = h("p", { class: "quiet", hidden: true }, kProposal);
   private forms: ScaleForm[] = [];
   private status: RatingStatus | null = null;
 
@@ -37,7 +39,7 @@ export class RatePage implements Page {
     this.element.replaceChildren(h("h1", {}, `Rate: ${status.title}`), links,
       ...(status.trouble ? [h("p", { class: "alarm", role: "alert" }, `Marks cannot be stored: ${status.trouble}`)] : []),
       h("p", { class: "quiet" }, stitchHint, scales.length > 1 ? ` ${formsHint}` : "", " By keyboard: Tab goes from item to item, the number of points or the arrows choose, Enter stores the form."),
-      h("label", { class: "line-input" }, "Your code (no name)", this.code), ...this.forms.map((form) => form.element));
+      h("label", { class: "line-input" }, "Your code (no name)", this.code), ...this.forms.map((form) => form.element), this.proposal);
     this.status = status;
     this.showGiven();
   }
@@ -56,5 +58,6 @@ export class RatePage implements Page {
 
   private showGiven(): void {
     for (const form of this.forms) form.show(this.status?.ratings ?? [], this.code.value);
+    this.proposal.hidden = !this.forms.some((form) => form.element.textContent!.includes("[P]"));
   }
 }

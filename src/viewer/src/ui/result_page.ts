@@ -4,7 +4,7 @@ import type { Result, Scale, Series, ServerMessage } from "../messages";
 import { session as fetchSession } from "../net/api";
 import { analysisPanel } from "./analysis_panel";
 import { h } from "./dom";
-import { clock, listed, kKnotTitles, kLaboratory, milliNewton, quantity, words, eventWords } from "./format";
+import { clock, listed, kKnotTitles, kLaboratory, kProposal, measured, milliNewton, quantity, reason, words, eventWords } from "./format";
 import { PathPlot } from "./path_plot";
 import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
@@ -15,7 +15,7 @@ import { clampSection, factorSection, handlingSection, joinSection, stitchSectio
 
 /// Why it is not passed. Results of older sessions may not say.
 function reasons(verdict: readonly string[]): HTMLElement {
-  return h("ul", { class: "reasons", "aria-label": "Why it is not passed" }, ...verdict.map((why) => h("li", {}, why)));
+  return h("ul", { class: "reasons", "aria-label": "Why it is not passed" }, ...verdict.map((why) => h("li", {}, reason(why))));
 }
 
 /// A share that stayed at zero and is not scored: of something that the task does not have.
@@ -79,8 +79,9 @@ export class ResultPage implements Page {
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
       h("div", { class: "stitchgrid" }, stitchSection(result, id), ...(result.scales ?? []).map((scale, k) => this.scaleCard(scale, k === 0 ? id : null)), joinSection(result.leak, result.stitches, result.lapses), clampSection(result.clamps, result.milking), handlingSection(result.handling), factorSection(result.thrombosis_factors)),
       this.curves(result));
-    const map = pressureMapPanel(result.pressure_map);
-    if (map) this.element.insertBefore(map, this.element.lastElementChild);
+    const map = pressureMapPanel(result.pressure_map), curves = this.element.lastElementChild!;
+    if (this.element.textContent!.includes("[P]")) curves.before(h("p", { class: "quiet proposal" }, kProposal));
+    if (map) curves.before(map);
     if (!id) return;
     const panel = analysisPanel(id);
     this.element.append(panel.element);
@@ -96,10 +97,10 @@ export class ResultPage implements Page {
   private scoreTable(result: Result): HTMLElement {
     const rows = result.score.items.map((item) => {
       const share = item.max_points > 0 ? Math.max(0, Math.min(1, item.points / item.max_points)) : 0;
-      return h("tr", {}, h("th", { scope: "row" }, item.title ?? words(item.name)), h("td", { class: "number" }, quantity(item.value, item.unit)),
+      return h("tr", {}, h("th", { scope: "row" }, item.title ?? words(item.name)), h("td", { class: "number" }, measured(item.value, item.unit)),
         h("td", { class: "number" }, h("strong", {}, `${+item.points.toFixed(1)}`), ` / ${+item.max_points.toFixed(1)}`,
           h("div", { class: "track", "aria-hidden": "true" }, h("div", { class: "fill", style: `transform:scaleX(${share.toFixed(3)})` }))),
-        h("td", {}, item.why));
+        h("td", {}, reason(item.why)));
     });
     return h("section", { class: "panel score" }, h("h2", {}, "Score and reasons"),
       h("table", {}, h("thead", {}, h("tr", {}, ...["Measure", "Measured", "Points", "Why"].map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...rows)));
@@ -117,7 +118,7 @@ export class ResultPage implements Page {
   /// What the simulator estimates of one of the task's rating scales, and with `id` the way to the raters' forms.
   private scaleCard(scale: Scale, id: string | null): HTMLElement {
     const known = scale.items.filter((item) => item.estimate !== null), sum = known.reduce((total, item) => total + (item.estimate ?? 0), 0);
-    const rows = scale.items.map((item) => h("tr", {}, h("th", { scope: "row" }, item.title), h("td", { class: "number" }, item.estimate === null ? "–" : `${item.estimate} / ${scale.most}`), h("td", { class: "quiet" }, item.why)));
+    const rows = scale.items.map((item) => h("tr", {}, h("th", { scope: "row" }, item.title), h("td", { class: "number" }, item.estimate === null ? "–" : `${item.estimate} / ${scale.most}`), h("td", { class: "quiet" }, reason(item.why))));
     return h("section", { class: "panel scale", "aria-labelledby": `scale-${scale.name}` }, h("h2", { id: `scale-${scale.name}` }, scale.title),
       h("p", { class: "alarm" }, `${scale.label.charAt(0).toUpperCase()}${scale.label.slice(1)}: ${sum} of ${known.length * scale.most} points of the items that can be estimated; ${scale.items.length - known.length} of ${scale.items.length} items are left to a rater. ${better(scale)}`),
       h("table", {}, h("thead", {}, h("tr", {}, ...["Item", "Estimate", "Rests on"].map((name) => h("th", { scope: "col" }, name)))), h("tbody", {}, ...rows)), h("p", { class: "quiet" }, scale.source),

@@ -2,7 +2,7 @@
 import type { Scale, ScaleItem } from "../messages";
 import type { Rated } from "../net/api";
 import { h, setText } from "./dom";
-import { day } from "./format";
+import { day, reason } from "./format";
 import { better } from "./rating_words";
 
 const kSimulator = "simulator";
@@ -65,7 +65,7 @@ export class ScaleForm {
     const sum = (one: Rated): string => items.every((item) => one.marks[item.name] !== undefined) ? String(items.reduce((total, item) => total + one.marks[item.name], 0)) : "–";
     const name = (one: Rated): string => one.rater === kSimulator ? "simulator (estimate)" : one.rater;
     return h("table", {}, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Item"), ...raters.map((one) => h("th", { scope: "col" }, name(one), h("span", { class: "unit" }, day(one.stored)))), h("th", { scope: "col" }, "What the estimate rests on"))),
-      h("tbody", {}, ...items.map((item) => h("tr", {}, h("th", { scope: "row" }, item.title), ...raters.map((one) => h("td", { class: "number" }, mark(one, item))), h("td", { class: "quiet" }, item.why))),
+      h("tbody", {}, ...items.map((item) => h("tr", {}, h("th", { scope: "row" }, item.title), ...raters.map((one) => h("td", { class: "number" }, mark(one, item))), h("td", { class: "quiet" }, reason(item.why)))),
         h("tr", { class: "sum" }, h("th", { scope: "row" }, "Sum"), ...raters.map((one) => h("td", { class: "number" }, sum(one))), h("td", {}, ""))));
   }
 }

@@ -29,12 +29,24 @@ export function tails(stitch: Pick<Stitch, "tail_mm" | "short_tail_mm">): string
 const inner = (stitch: Stitch): string => both((stitch.bites_inner_m ?? [null, null]).map((value) => (value === null ? null : 1e6 * value)), 0);
 const layers = (stitch: Stitch): string => (stitch.depth_layers?.length ? stitch.depth_layers.join(", ") : "–");
 
+/// What the value of a lapse measures (#: the value); "name unit" where a lapse is found by more than one.
+const kLapseTexts: Record<string, string> = {
+  "oblique": "turned by # from straight across the cut", "wide-bite": "# wide", "partial-thickness": "goes through # of the wall", "wall-tear": "torn by #",
+  "too-tight": "thread pulls # of bite", "loose-knot m": "# of slack thread in the knot and loop", "loose-knot thicknesses": "edges # apart", "disrupted-line": "edges # apart up to the next stitch",
+  "unequal-spacing": "spaces vary by # of their mean", "back-wall": "left the lumen # round from where it came in", "thread-in-lumen": "# of thread in the lumen", "edge-overlap": "edges overlap by #",
+};
+
+function lapseNumber({ name, value, unit }: Lapse): string {
+  if (value === null) return "";
+  if (unit === "thicknesses") return `${value.toFixed(1)} wall thicknesses`;
+  if (unit === "deg") return `${value.toFixed(0)}°`;
+  if (unit === "share" || name === "unequal-spacing") return `${(100 * value).toFixed(0)} %`;
+  return unit === "N/m" ? `${value.toFixed(0)} mN for each mm` : quantity(value, unit);
+}
+
 export function lapseValue(lapse: Lapse): string {
-  if (lapse.value === null) return "";
-  if (lapse.unit === "thicknesses") return `${lapse.value.toFixed(1)} wall thicknesses`;
-  if (lapse.unit === "deg") return `${lapse.value.toFixed(0)}°`;
-  if (lapse.unit === "share") return `${(100 * lapse.value).toFixed(0)} % of the wall`;
-  return quantity(lapse.value, lapse.unit);
+  const number = lapseNumber(lapse), text = kLapseTexts[`${lapse.name} ${lapse.unit}`] ?? kLapseTexts[lapse.name];
+  return number && text ? text.replace("#", number) : number;
 }
 
 export function ofStitch(lapses: readonly Lapse[] | undefined, stitch: number): Lapse[] {
@@ -81,7 +93,7 @@ export function stitchSection(result: Result, id: string | null): HTMLElement | 
   const { stitches, lapses } = result;
   if (!stitches) return null;
   return h("section", { class: "panel stitchpanel", "aria-labelledby": "stitches-title" }, h("h2", { id: "stitches-title" }, "Stitch by stitch"),
-    stitches.length > 0 ? h("div", { class: "long" }, table(result, stitches, id)) : h("p", { class: "quiet" }, "No stitch was made."),
+    ...(stitches.length > 0 ? [h("p", { class: "quiet" }, result.leak ? "In order round the vessel." : "In order along the cut."), h("div", { class: "long" }, table(result, stitches, id))] : [h("p", { class: "quiet" }, "No stitch was made.")]),
     h("h2", {}, "Lapses"), lapseList(lapses ?? [], id), id && (lapses ?? []).length > 0 ? h("p", {}, h("a", { class: "button", href: `#/moments/${encodeURIComponent(id)}` }, "Pictures of the moments")) : null, h("p", { class: "quiet" }, `By the rules of: ${result.lapse_rules ?? "–"}. All marks are estimates of the simulator.`));
 }
 
