@@ -53,3 +53,12 @@ it("a curve without a unit that stayed at zero is left out, unless it is scored"
   expect(shown([])).not.toContain("Share of the target seen");
   expect(shown([{ name: "exposed", title: "Target seen", value: 0, unit: "-", points: 0, max_points: 25, why: "" }])).toContain("Share of the target seen");
 });
+
+it("a result tells the time with pauses where events or curves go beyond the task's clock", () => {
+  const shown = (change: Partial<Result>) => new ResultPage({ ...app, result: { ...result, ...change } } as unknown as App, "").element.querySelector(".resulthead p")!.textContent;
+  const event = (time: number) => ({ time, name: "cut", tool: 1, value: 0, unit: "-", text: "" });
+  expect(shown({ seconds: 96, series: [], events: [event(20), event(104.1)] })).toBe("Time 1:36.0 (1:44 with pauses)");
+  expect(shown({ seconds: 29.5, events: [] })).toBe("Time 0:29.5");
+  expect(shown({ seconds: 5, events: [] })).toBe("Time 0:05.0 (0:30 with pauses)");
+  expect(shown({ seconds: 5, events: [], series: [] })).toBe("Time 0:05.0");
+});

@@ -18,6 +18,15 @@ function reasons(verdict: readonly string[]): HTMLElement {
   return h("ul", { class: "reasons", "aria-label": "Why it is not passed" }, ...verdict.map((why) => h("li", {}, reason(why))));
 }
 
+const kAfterEnd = 2; // [s], that a task is still shown after its end: no pause
+
+/// The task's clock stands still while input is silent; events and curves count on, so that theirs is told where it differs.
+function timeOf(result: Result): string {
+  const scored = clock(result.seconds);
+  const end = Math.max(...result.events.map((event) => event.time), ...result.series.map((one) => one.time[one.time.length - 1] ?? 0));
+  return end > result.seconds + kAfterEnd ? `${scored} (${clock(end).replace(/\.\d$/, "")} with pauses)` : scored;
+}
+
 /// A share that stayed at zero and is not scored: of something that the task does not have.
 function isIdle(one: Series, result: Result): boolean {
   return one.unit === "-" && one.value.every((value) => !value) && !result.score.items.some((item) => item.name === one.name);
@@ -73,7 +82,7 @@ export class ResultPage implements Page {
     const total = h("div", { class: "total" }, h("span", { class: "points" }, result.score.total.toFixed(0)), h("span", { class: "of" }, `of ${result.score.max_total.toFixed(0)} points`),
       h("div", { class: "track", "aria-hidden": "true" }, h("div", { class: "fill", style: `transform:scaleX(${share.toFixed(3)})` })));
     this.element.replaceChildren(
-      h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${clock(result.seconds)}`)), this.verdict(result), total,
+      h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${timeOf(result)}`)), this.verdict(result), total,
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
       ...(result.passed ? [] : [reasons(result.verdict ?? [])]),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),
