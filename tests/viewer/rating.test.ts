@@ -104,7 +104,15 @@ describe("raters' forms", () => {
     await store(form);
     expect(form.querySelector("[role=alert]")!.textContent).toContain("code is missing");
     expect(stored).toEqual([]);
+    type(page, "R 1");
+    await store(form);
+    expect(form.querySelector("[role=alert]")!.textContent).toContain("letters, digits, - and _ only");
     type(page, "bad");
+    choose(form, "oblique", 0);
+    await store(form);
+    expect(form.querySelector("[role=alert]")!.textContent).toBe("Every item needs a mark. Still without one: Title of back-wall.");
+    expect(form.querySelector("form")!.noValidate, "our words instead of the browser's").toBe(true);
+    choose(form, "back-wall", 0);
     await store(form);
     expect(form.querySelector("[role=alert]")!.textContent).toContain("expected a code");
     expect(panel(page, "mars10").querySelector("[role=alert]")!.textContent).toBe("");

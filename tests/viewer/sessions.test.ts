@@ -22,6 +22,15 @@ const submit = async (dialog: Element) => { dialog.querySelector("form")!.dispat
 
 beforeEach(() => { globalThis.fetch = (async (path: string) => new Response(JSON.stringify(path === "/api/sessions" ? { sessions: [] } : { session: { ...info, input: "demo" }, result }))) as unknown as typeof fetch; });
 
+it("a bad trainee's code is told in our words", async () => {
+  const dialog = startDialog(), code = dialog.querySelector("input[type=text]") as HTMLInputElement;
+  code.value = "A B";
+  await submit(dialog);
+  expect(sent).toEqual([]);
+  expect(dialog.querySelector("[role=alert]")!.textContent).toContain("letters, digits, - and _ only");
+  expect(dialog.querySelector("form")!.noValidate).toBe(true);
+});
+
 describe("a demonstration", () => {
   it("is started without a trainee's code, which stays for who moves the instruments", async () => {
     const dialog = startDialog(), code = dialog.querySelector("input[type=text]") as HTMLInputElement;

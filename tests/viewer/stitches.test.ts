@@ -66,6 +66,8 @@ describe("stitches of a result", () => {
   it("are not made up where a task has none", () => {
     expect(stitchSection({ ...result, stitches: undefined }, "s")).toBeNull();
     expect(stitchSection({ ...result, stitches: [], lapses: [] }, null)!.textContent).toContain("No stitch was made");
+    expect(stitchSection({ ...result, stitches: [], lapses: [] }, null)!.textContent).toContain("No stitch: nothing to look at");
+    expect(stitchSection({ ...result, lapses: [] }, null)!.textContent).toContain("No lapse was found");
     expect(both([null, 1], 1)).toBe("– / 1.0");
     expect(replayAt("a/b", null)).toBe("#/replay/a%2Fb/0.00");
   });

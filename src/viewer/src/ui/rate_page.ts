@@ -35,7 +35,7 @@ export class RatePage implements Page {
       this.element.replaceChildren(h("h1", {}, `Rate: ${status.title}`), h("p", {}, "This task has no rating scale."), links);
       return;
     }
-    this.forms = scales.map((scale) => new ScaleForm(scale, (marks) => this.send(scale, marks)));
+    this.forms = scales.map((scale) => new ScaleForm(scale, () => this.codeTrouble(), (marks) => this.send(scale, marks)));
     this.element.replaceChildren(h("h1", {}, `Rate: ${status.title}`), links,
       ...(status.trouble ? [h("p", { class: "alarm", role: "alert" }, `Marks cannot be stored: ${status.trouble}`)] : []),
       h("p", { class: "quiet" }, stitchHint, scales.length > 1 ? ` ${formsHint}` : "", " By keyboard: Tab goes from item to item, the number of points or the arrows choose, Enter stores the form."),
@@ -44,9 +44,14 @@ export class RatePage implements Page {
     this.showGiven();
   }
 
+  private codeTrouble(): string {
+    if (this.code.checkValidity()) return "";
+    this.code.focus();
+    return this.code.value === "" ? "Your code is missing: it stands above the forms." : "Your code, above the forms, may hold letters, digits, - and _ only.";
+  }
+
   /// A refusal's text, or nothing: they are stored.
   private async send(scale: Scale, marks: Record<string, number>): Promise<string> {
-    if (!this.code.reportValidity()) return "Your code is missing: it stands above the forms.";
     try {
       this.status = await ratings.put(this.id, scale.name, this.code.value, marks);
     } catch (error) {

@@ -78,7 +78,8 @@ function table(result: Result, stitches: readonly Stitch[], id: string | null): 
   return h("table", { class: "stitches" }, h("thead", {}, h("tr", {}, ...kColumns.map(([name, unit]) => h("th", { scope: "col" }, name, unit ? h("span", { class: "unit" }, unit) : null)))), h("tbody", {}, ...rows));
 }
 
-function lapseList(lapses: readonly Lapse[], id: string | null): HTMLElement {
+function lapseList(lapses: readonly Lapse[], stitches: number, id: string | null): HTMLElement {
+  if (lapses.length === 0 && stitches === 0) return h("p", {}, icon.info(), " No stitch: nothing to look at.");
   if (lapses.length === 0) return h("p", {}, icon.pass(), " No lapse was found.");
   return h("ul", { class: "lapses" }, ...lapses.map((lapse) => {
     const critical = lapse.critical === true, where = lapse.stitch < 0 ? "the whole line" : `stitch ${lapse.stitch + 1}`;
@@ -94,7 +95,7 @@ export function stitchSection(result: Result, id: string | null): HTMLElement | 
   if (!stitches) return null;
   return h("section", { class: "panel stitchpanel", "aria-labelledby": "stitches-title" }, h("h2", { id: "stitches-title" }, "Stitch by stitch"),
     ...(stitches.length > 0 ? [h("p", { class: "quiet" }, result.leak ? "In order round the vessel." : "In order along the cut."), h("div", { class: "long" }, table(result, stitches, id))] : [h("p", { class: "quiet" }, "No stitch was made.")]),
-    h("h2", {}, "Lapses"), lapseList(lapses ?? [], id), id && (lapses ?? []).length > 0 ? h("p", {}, h("a", { class: "button", href: `#/moments/${encodeURIComponent(id)}` }, "Pictures of the moments")) : null, h("p", { class: "quiet" }, `By the rules of: ${result.lapse_rules ?? "–"}. All marks are estimates of the simulator.`));
+    h("h2", {}, "Lapses"), lapseList(lapses ?? [], stitches.length, id), id && (lapses ?? []).length > 0 ? h("p", {}, h("a", { class: "button", href: `#/moments/${encodeURIComponent(id)}` }, "Pictures of the moments")) : null, h("p", { class: "quiet" }, `By the rules of: ${result.lapse_rules ?? "–"}. All marks are estimates of the simulator.`));
 }
 
 /// Leak by sector as bars, with narrowing and flow.

@@ -101,11 +101,11 @@ export class TasksPage implements Page {
     dial.addEventListener("input", () => setText(turned, stiffness() === 1 ? "as in the model" : `${stiffness()} times the model's`));
     const exam = h("input", { type: "checkbox", name: "exam" });
     const trouble = h("p", { class: "trouble", role: "alert" }, "");
-    const form = h("form", { method: "dialog", onsubmit: (event: Event) => {
+    const form = h("form", { method: "dialog", novalidate: true, onsubmit: (event: Event) => {
       event.preventDefault();
       const input = (form.querySelector("input[name=input]:checked") as HTMLInputElement | null)?.value as InputKind | undefined;
       if (!input) { setText(trouble, "Choose how the instruments are moved."); return; }
-      if (!code.checkValidity()) { setText(trouble, "The code may hold letters, digits, - and _ only."); return; }
+      if (!code.checkValidity()) { setText(trouble, "The code may hold letters, digits, - and _ only."); code.focus(); return; }
       void this.begin({ type: "start", task: task.name, input, ...(code.value && !code.disabled ? { code: code.value } : {}), ...(task.dial && stiffness() !== 1 ? { stiffness: stiffness() } : {}), ...(exam.checked ? { exam: true } : {}), ...(others ? { take_over: over.checked } : {}) }, trouble);
     } },
       h("fieldset", {}, h("legend", {}, "Who moves the instruments?"), ...this.choices(task)),
