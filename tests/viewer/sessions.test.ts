@@ -1,8 +1,8 @@
 import { ResultPage } from "@viewer/ui/result_page";
-import { sessionTable } from "@viewer/ui/sessions_page";
+import { SessionsPage, sessionTable } from "@viewer/ui/sessions_page";
 import { TasksPage } from "@viewer/ui/tasks_page";
 import type { App } from "@viewer/app";
-import type { Result, SessionInfo } from "@viewer/messages";
+import type { Result, ServerMessage, SessionInfo } from "@viewer/messages";
 import { resultOf } from "./sample_frames.mjs";
 
 const info = { id: "s1", task: "knot-square", title: "Square knot", input: "pointer", code: "A17", started: "2026-11-22T01:00:00Z", seconds: 38, finished: true, passed: true, total: 89 } as SessionInfo;
@@ -45,7 +45,7 @@ describe("a demonstration", () => {
     expect(sent).toEqual([{ type: "start", task: "knot-square", input: "demo" }, { type: "start", task: "knot-square", input: "pointer", code: "A17" }]);
   });
   it("is neither passed nor not passed, in the list and on the result", async () => {
-    const verdicts = [...sessionTable([info, { ...info, input: "demo" }, { ...info, input: "demo", passed: false }]).querySelectorAll("tbody tr")].map((row) => row.children[6].textContent);
+    const verdicts = [...sessionTable([info, { ...info, input: "demo" }, { ...info, input: "demo", passed: false }], app).querySelectorAll("tbody tr")].map((row) => row.children[6].textContent);
     expect(verdicts).toEqual(["✓ passed", "demonstration", "demonstration"]);
     const stored = new ResultPage(app, "s1"), live = new ResultPage({ ...app, result, session: { input: "demo" } } as unknown as App, ""), own = new ResultPage({ ...app, result } as unknown as App, "");
     await settled();
@@ -70,4 +70,23 @@ it("a result tells the time with pauses where events or curves go beyond the tas
   expect(shown({ seconds: 29.5, events: [] })).toBe("Time 0:29.5");
   expect(shown({ seconds: 5, events: [] })).toBe("Time 0:05.0 (0:30 with pauses)");
   expect(shown({ seconds: 5, events: [], series: [] })).toBe("Time 0:05.0");
+});
+
+it("a session that is running is listed as that, without a replay", () => {
+  const cut = { ...info, finished: false, passed: null, total: null, seconds: 0 } as SessionInfo;
+  const cells = (state: string, session: string) => [...sessionTable([cut], { session: { state, session } } as unknown as App).querySelectorAll("tbody td")].slice(3).map((one) => one.textContent);
+  expect(cells("running", "s1")).toEqual(["–", "–", "running", ""]);
+  for (const [state, session] of [["running", "s2"], ["ended", "s1"]]) expect(cells(state, session)).toEqual(["0:00.0", "–", "cut short", "Replay"]);
+});
+
+it("the lists follow when a session begins or ends", async () => {
+  globalThis.fetch = (async () => new Response(JSON.stringify({ sessions: [{ ...info, finished: false, passed: null, total: null }] }))) as unknown as typeof fetch;
+  for (const make of [(of: App) => new SessionsPage(of), (of: App) => new TasksPage(of)]) {
+    const own = { ...app } as unknown as { session: object | null }, page = make(own as unknown as App);
+    const verdict = async () => { await settled(); return page.element.querySelector("tr[data-session]")!.children[6].textContent; };
+    expect(await verdict()).toBe("cut short");
+    own.session = { state: "running", session: "s1" };
+    page.onmessage({ type: "session_state" } as ServerMessage);
+    expect(await verdict()).toBe("running");
+  }
 });

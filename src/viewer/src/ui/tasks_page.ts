@@ -5,7 +5,7 @@ import { sessions } from "../net/api";
 import { clear, h, setText } from "./dom";
 import { taskPicture } from "./pictures";
 import { askBeforeReplays, mayEndTask } from "./running_task";
-import { sessionTable } from "./sessions_page";
+import { runningNow, sessionTable } from "./sessions_page";
 
 const kInputs: Record<InputKind, [string, string]> = {
   pointer: ["Mouse, keyboard or gamepad", "You move both instruments from this browser."],
@@ -19,6 +19,7 @@ export class TasksPage implements Page {
   private readonly chapters = h("div", {});
   private readonly running = h("div", { class: "running" });
   private readonly recent = h("section", { class: "recent" });
+  private listed: string | null = null; // what ran when the latest sessions were asked for
   private readonly dialog = h("dialog", { class: "start", "aria-labelledby": "start-title" });
 
   constructor(private readonly app: App) {
@@ -31,7 +32,9 @@ export class TasksPage implements Page {
 
   onmessage(message: ServerMessage): void {
     if (message.type === "hello") this.showTasks();
-    if (message.type === "session_state") this.showRunning();
+    if (message.type !== "session_state") return;
+    this.showRunning();
+    if (runningNow(this.app) !== this.listed) void this.showRecent();
   }
 
   private showTasks(): void {
@@ -56,8 +59,9 @@ export class TasksPage implements Page {
 
   /// The list is a convenience here; where it cannot be had the sessions page says why.
   private async showRecent(): Promise<void> {
+    this.listed = runningNow(this.app);
     const list = await sessions().then((answer) => answer.sessions, () => []);
-    if (list.length > 0) this.recent.replaceChildren(h("h2", {}, "Latest sessions"), sessionTable(list.slice(0, 5)));
+    if (list.length > 0) this.recent.replaceChildren(h("h2", {}, "Latest sessions"), sessionTable(list.slice(0, 5), this.app));
   }
 
   private showRunning(): void {
