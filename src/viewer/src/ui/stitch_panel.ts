@@ -58,8 +58,8 @@ export function replayAt(id: string, time: number | null, stitch = -1): string {
   return `#/replay/${encodeURIComponent(id)}/${(time ?? 0).toFixed(2)}${stitch >= 0 ? `/stitch-${stitch + 1}` : ""}`;
 }
 
-const kColumns: [string, string][] = [["Stitch", ""], ["Bite", "both sides, wall thicknesses"], ["Inside", "µm, bites where it left and came in"], ["Entry", "°, of the needle to the surface"], ["Exit", "°, of the needle to the surface"], ["Oblique", "° to the axis"],
-  ["Depth", "% of the wall"], ["Layers", "of the thinner side"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Throws", "of the knot"], ["Knot", ""], ["Tail", "mm, cut ends"], ["Lapses", ""]];
+const kColumns: [string, string][] = [["Stitch", ""], ["Lapses", ""], ["Bite", "both sides, wall thicknesses"], ["Inside", "µm, bites where it left and came in"], ["Entry", "°, of the needle to the surface"], ["Exit", "°, of the needle to the surface"], ["Oblique", "° to the axis"],
+  ["Depth", "% of the wall"], ["Layers", "of the thinner side"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Throws", "of the knot"], ["Knot", ""], ["Tail", "mm, cut ends"]];
 
 function row(stitch: Stitch, k: number, next: number | null | undefined, lapses: Lapse[], id: string | null): HTMLElement {
   const name = `Stitch ${k + 1}`;
@@ -68,7 +68,7 @@ function row(stitch: Stitch, k: number, next: number | null | undefined, lapses:
     cell(next, 1000, 2), cell(stitch.tension_n, 1000, 1), cell(stitch.peak_force_n, 1000, 1), cell(stitch.torn_m, 1e6, 0),
     cell(stitch.throws, 1, 0), stitch.knot ? words(stitch.knot) : "–", tails(stitch)];
   return h("tr", { "data-stitch": k }, h("th", { scope: "row" }, id ? h("a", { href: replayAt(id, stitch.time, k), title: "Show this stitch in the replay" }, name) : name),
-    ...numbers.map((text) => h("td", { class: "number" }, text)), h("td", { class: lapses.length > 0 ? "alarm" : "quiet" }, ...found));
+    h("td", { class: lapses.length > 0 ? "alarm" : "quiet" }, ...found), ...numbers.map((text) => h("td", { class: "number" }, text)));
 }
 
 /// In the order round the cut, so that "next" is the neighbour.
@@ -94,7 +94,7 @@ export function stitchSection(result: Result, id: string | null): HTMLElement | 
   const { stitches, lapses } = result;
   if (!stitches) return null;
   return h("section", { class: "panel stitchpanel", "aria-labelledby": "stitches-title" }, h("h2", { id: "stitches-title" }, "Stitch by stitch"),
-    ...(stitches.length > 0 ? [h("p", { class: "quiet" }, result.leak ? "In order round the vessel." : "In order along the cut."), h("div", { class: "long" }, table(result, stitches, id))] : [h("p", { class: "quiet" }, "No stitch was made.")]),
+    ...(stitches.length > 0 ? [h("p", { class: "quiet" }, result.leak ? "In order round the vessel." : "In order along the cut."), h("div", { class: "long wide", tabindex: 0, role: "group", "aria-labelledby": "stitches-title" }, table(result, stitches, id))] : [h("p", { class: "quiet" }, "No stitch was made.")]),
     h("h2", {}, "Lapses"), lapseList(lapses ?? [], stitches.length, id), id && (lapses ?? []).length > 0 ? h("p", {}, h("a", { class: "button", href: `#/moments/${encodeURIComponent(id)}` }, "Pictures of the moments")) : null, h("p", { class: "quiet" }, `By the rules of: ${result.lapse_rules ?? "–"}. All marks are estimates of the simulator.`));
 }
 
