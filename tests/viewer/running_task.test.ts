@@ -43,6 +43,12 @@ describe("a running task", () => {
     }
     expect(sent.length).toBe(3);
   });
+  it("is asked about where nobody controls it, as after loading the page anew", async () => {
+    const page = await shown(new TasksPage(appIn({ ...running, in_control: false, controller: 0 })));
+    await press(page, "button.card");
+    await submit(page);
+    expect([page.querySelectorAll("dialog.ask").length, sent]).toEqual([1, []]);
+  });
   it("is ended by a replay only when that is agreed to", async () => {
     const page = await shown(new SessionsPage(appIn(running)));
     await press(page, "a[href='#/replay/s1']");
