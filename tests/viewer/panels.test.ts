@@ -1,7 +1,7 @@
 import { clock, eventWords, milliNewton, quantity } from "@viewer/ui/format";
 import { barScale, ForcePanel, StepPanel, tensionZone, WarningList } from "@viewer/ui/panels";
 import { knotPicture, kThrows, strands, taskPicture } from "@viewer/ui/pictures";
-import { chartsOf } from "@viewer/ui/plots";
+import { chartsOf, labelsThatFit } from "@viewer/ui/plots";
 import { kShortcuts } from "@viewer/input/shortcuts";
 import type { Frame, Scene } from "@viewer/messages";
 import { frameAt as sample, kScene } from "./sample_frames.mjs";
@@ -108,6 +108,15 @@ describe("plots", () => {
       { name: "v", title: "V", unit: "m/s", time: [0], value: [0.5] }]);
     expect(charts.map((chart) => chart.unit)).toEqual(["mN", "mm/s"]);
     expect(charts[0].columns).toEqual([[0, 1, 2], [100, 200, null], [null, 300, 400]]);
+  });
+  it("give curves that another would flatten a chart of their own, but not those at rest", () => {
+    const curve = (name: string, value: number) => ({ name, title: name, unit: "N", time: [0, 1], value: [0, value] });
+    const charts = chartsOf([curve("squeeze", 3), curve("pull", 0.03), curve("tension", -0.035), curve("idle", 1e-9), curve("other", 0.16)]);
+    expect(charts.map((chart) => [chart.names, chart.smaller])).toEqual([[["squeeze", "idle", "other"], false], [["pull", "tension"], true]]);
+  });
+  it("label only events whose words have room", () => {
+    const width = (text: string) => 10 * text.length;
+    expect(labelsThatFit([{ x: 0, text: "imprecise" }, { x: 80, text: "cut" }, { x: 95, text: "cut" }, { x: 190, text: "knot" }], width, 200)).toEqual(["imprecise", "", "cut", ""]);
   });
 });
 

@@ -104,10 +104,27 @@ describe("raters' forms", () => {
     await store(form);
     expect(form.querySelector("[role=alert]")!.textContent).toContain("code is missing");
     expect(stored).toEqual([]);
+    type(page, "R 1");
+    await store(form);
+    expect(form.querySelector("[role=alert]")!.textContent).toContain("letters, digits, - and _ only");
     type(page, "bad");
+    choose(form, "oblique", 0);
+    await store(form);
+    expect(form.querySelector("[role=alert]")!.textContent).toBe("Every item needs a mark. Still without one: Title of back-wall.");
+    expect(form.querySelector("form")!.noValidate, "our words instead of the browser's").toBe(true);
+    choose(form, "back-wall", 0);
     await store(form);
     expect(form.querySelector("[role=alert]")!.textContent).toContain("expected a code");
     expect(panel(page, "mars10").querySelector("[role=alert]")!.textContent).toBe("");
+  });
+  it("explain [P] once it is shown", async () => {
+    scales = [{ ...mars, items: [{ ...mars.items[0], why: "Source: [P]" }] }];
+    const page = await opened(), note = () => [...page.querySelectorAll("p")].filter((one) => !one.hidden && one.textContent!.includes("not yet confirmed")).length;
+    expect(note()).toBe(0);
+    type(page, "R1");
+    choose(panel(page, "mars10"), "closure", 1);
+    await store(panel(page, "mars10"));
+    expect(note()).toBe(1);
   });
   it("are one where the recording has one scale, and none where it has none", async () => {
     scales = [mars];
@@ -127,4 +144,9 @@ it("a result shows the estimates of every scale, says which way is better, and l
   expect(cards[0].textContent).toContain("1 of 2 points of the items that can be estimated; 1 of 2 items are left");
   expect(cards[1].textContent).toContain("1 of 2 points of the items that can be estimated; 0 of 2 items are left to a rater. Fewer points are better");
   expect(page.element.querySelectorAll('a[href="#/rate/s%201"]').length).toBe(1);
+});
+
+it("a result explains [P] once, where it shows it", () => {
+  const shown = (source: string) => new ResultPage({ result: { ...(resultOf("s 1", 30) as unknown as Result), scales: [{ ...mars, source }] }, session: null } as unknown as App, "").element.querySelectorAll(".proposal").length;
+  expect([shown("S"), shown("numbers [P]")]).toEqual([0, 1]);
 });

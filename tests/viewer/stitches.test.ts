@@ -1,4 +1,4 @@
-import { both, clampSection, handlingSection, joinSection, replayAt, StitchList, stitchSection, tails } from "@viewer/ui/stitch_panel";
+import { both, clampSection, handlingSection, joinSection, lapseValue, replayAt, StitchList, stitchSection, tails } from "@viewer/ui/stitch_panel";
 import { cividis } from "@viewer/scene/palette";
 import type { Leak, Result, Stitch } from "@viewer/messages";
 import { resultOf } from "./sample_frames.mjs";
@@ -12,26 +12,40 @@ describe("stitches of a result", () => {
   it("stand in order along the cut, each with its bites and lapses and a way to its moment", () => {
     const rows = [...stitchSection(result, "s 1")!.querySelectorAll("tbody tr")].map((row) => [...row.children].map((cell) => cell.textContent));
     expect(rows.map((row) => row[0])).toEqual(["Stitch 2", "Stitch 1"]);
-    expect(rows[0][1]).toBe("4.6 / –");
-    expect(rows[0][8]).toBe("1.00");
-    expect(rows[0].at(-1)).toContain("Wide bite");
-    expect(rows[1].at(-1)).toContain("Back wall");
+    expect(rows[0][2]).toBe("4.6 / –");
+    expect(rows[0][9]).toBe("1.00");
+    expect(rows[0][1]).toContain("Wide bite");
+    expect(rows[1][1]).toContain("Back wall");
     const links = [...stitchSection(result, "s 1")!.querySelectorAll(".lapses a")].map((link) => link.getAttribute("href"));
     expect(links).toEqual(["#/replay/s%201/20.00/stitch-2", "#/replay/s%201/11.25/stitch-1"]);
     expect(stitchSection(result, "s 1")!.querySelectorAll(".critical").length).toBe(1);
   });
+  it("say in which order they stand", () => {
+    expect(stitchSection(result, null)!.textContent).toContain("In order along the cut.");
+    expect(stitchSection({ ...result, leak: {} as Leak }, null)!.textContent).toContain("In order round the vessel.");
+  });
+  it("say what the number of each lapse measures", () => {
+    const told = (name: string, value: number | null, unit: string) => lapseValue({ name, stitch: 0, time: 1, value, unit });
+    expect(told("back-wall", 175, "deg")).toBe("left the lumen 175° round from where it came in");
+    expect(told("unequal-spacing", 0.38, "-")).toBe("spaces vary by 38 % of their mean");
+    expect(told("loose-knot", 3.43e-3, "m")).toBe("3.43 mm of slack thread in the knot and loop");
+    expect(told("loose-knot", 1.5, "thicknesses")).toBe("edges 1.5 wall thicknesses apart");
+    expect(told("too-tight", 120, "N/m")).toBe("thread pulls 120 mN for each mm of bite");
+    expect(told("partial-thickness", 0.8, "share")).toBe("goes through 80 % of the wall");
+    expect([told("something-new", 2.5e-3, "m"), told("back-wall", null, "deg")]).toEqual(["2.50 mm", ""]);
+  });
   it("tell the inner bites, the layers and the way to the next, where they are known", () => {
     const told = { ...result, stitches: result.stitches!.map((one, k) => ({ ...one, bites_inner_m: [2.5e-4, k === 0 ? 2.8e-4 : null], depth_layers: ["adventitia", "media"], spacing_m: k === 0 ? null : 1e-3 })) } as Result;
     const [second, first] = [...stitchSection(told, null)!.querySelectorAll("tbody tr")].map((row) => [...row.children].map((cell) => cell.textContent));
-    expect([first[2], second[2]]).toEqual(["250 / 280", "250 / –"]);
-    expect([first[7], first[8], second[8]]).toEqual(["adventitia, media", "–", "1.00"]);
+    expect([first[3], second[3]]).toEqual(["250 / 280", "250 / –"]);
+    expect([first[8], first[9], second[9]]).toEqual(["adventitia, media", "–", "1.00"]);
     const before = [...stitchSection(result, null)!.querySelectorAll("tbody tr td")].map((cell) => cell.textContent);
-    expect([before[1], before[6]]).toEqual(["– / –", "–"]);
+    expect([before[2], before[7]]).toEqual(["– / –", "–"]);
   });
   it("show the knot of each where it was recognised", () => {
     const tied = { ...result, stitches: [{ ...result.stitches![0], throws: 3, knot: "square", tail_mm: 1.25, short_tail_mm: 0.8 }] };
     const cells = [...stitchSection(tied, null)!.querySelectorAll("tbody td")].map((one) => one.textContent);
-    expect(cells.slice(-4, -1)).toEqual(["3", "Square", "1.3 / 0.8"]);
+    expect(cells.slice(-3)).toEqual(["3", "Square", "1.3 / 0.8"]);
     expect(tails({})).toBe("–");
     expect(tails({ tail_mm: 1.25, short_tail_mm: null })).toBe("1.3");
     const section = clampSection({ upstream_s: 12, downstream_s: null, order_right: true, note: "as asked", pressure_mmhg: [99, 98], leak_ml_per_min: 1, most_leak_ml_per_min: 2, through_ml_per_min: 4.9, lost_ml: 0.1, least_lumen_before_mm2: 0.2, least_lumen_mm2: 0.3 },
@@ -52,6 +66,8 @@ describe("stitches of a result", () => {
   it("are not made up where a task has none", () => {
     expect(stitchSection({ ...result, stitches: undefined }, "s")).toBeNull();
     expect(stitchSection({ ...result, stitches: [], lapses: [] }, null)!.textContent).toContain("No stitch was made");
+    expect(stitchSection({ ...result, stitches: [], lapses: [] }, null)!.textContent).toContain("No stitch: nothing to look at");
+    expect(stitchSection({ ...result, lapses: [] }, null)!.textContent).toContain("No lapse was found");
     expect(both([null, 1], 1)).toBe("– / 1.0");
     expect(replayAt("a/b", null)).toBe("#/replay/a%2Fb/0.00");
   });

@@ -19,7 +19,8 @@ export function milliNewton(newton: number): string {
   return `${value.toFixed(digits)} mN`;
 }
 
-const kShown: Record<string, [number, string]> = { N: [1000, "mN"], m: [1000, "mm"], "m/s": [1000, "mm/s"], rad: [180 / Math.PI, "°"] };
+const kShown: Record<string, [number, string]> = { N: [1000, "mN"], m: [1000, "mm"], "m/s": [1000, "mm/s"], rad: [180 / Math.PI, "°"],
+  um: [1, "µm"], deg: [1, "°"], "mmHg.min": [1, "mmHg min"], share: [100, "%"], thicknesses: [1, "wall thicknesses"] };
 
 /// Factor and unit in which a quantity is shown.
 export function shownUnit(unit: string): [number, string] {
@@ -33,8 +34,20 @@ export function quantity(value: number | string | boolean | null, unit: string):
   const [factor, shown] = shownUnit(unit);
   const scaled = value * factor, size = Math.abs(scaled);
   const text = Number.isInteger(scaled) ? String(scaled) : scaled.toFixed(size >= 100 ? 0 : size >= 10 ? 1 : 2);
-  return shown ? `${text} ${shown}` : text;
+  return shown === "°" ? `${text}°` : shown ? `${text} ${shown}` : text;
 }
+
+/// A scored value in the unit of the reason beside it, where a force in newton stays one.
+export function measured(value: number | string | boolean | null, unit: string): string {
+  return unit === "N" && typeof value === "number" ? `${value.toFixed(2)} N` : quantity(value, unit);
+}
+
+/// A reason of the trainer with its units as they are written elsewhere: "12 deg" -> "12°".
+export function reason(text: string): string {
+  return text.replace(/mmHg\.min\b/g, "mmHg min").replace(/(\d) um\b/g, "$1 µm").replace(/(\d) deg\b/g, "$1°");
+}
+
+export const kProposal = "[P]: our own proposal, not yet confirmed by raters.";
 
 export function day(iso: string): string {
   const date = new Date(iso);

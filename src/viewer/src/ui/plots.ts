@@ -1,4 +1,4 @@
-// Curves over time with the events marked (uPlot), one chart for each unit.
+// Curves over time with the events marked (uPlot), one chart for each unit, or more where one curve would flatten the others.
 import uPlot from "uplot";
 import "uplot/dist/uPlot.min.css";
 import type { Series, TimedEvent } from "../messages";
@@ -9,13 +9,24 @@ const kDashes = [[], [8, 4], [2, 3], [12, 3, 2, 3], [5, 5], [1, 4]]; // curves d
 
 const kSmallest = 0.01; // in the unit shown; below it a curve is a line at rest, not a landscape of rounding errors
 
-export interface ChartData { unit: string; titles: string[]; names: string[]; columns: (number | null)[][] }
+const kFlattened = 20; // times smaller than the largest: drawn by itself
+
+/// `smaller`: split off from a chart of the same unit.
+export interface ChartData { unit: string; smaller: boolean; titles: string[]; names: string[]; columns: (number | null)[][] }
+
+/// Curves apart where one is so much larger that another would be a line at rest. One that is at rest itself stays with the largest.
+function apart(group: Series[], factor: number): Series[][] {
+  const size = new Map(group.map((one) => [one, one.value.reduce<number>((most, v) => Math.max(most, Math.abs(v ?? 0) * factor), 0)]));
+  const largest = Math.max(...size.values()), small = group.filter((one) => size.get(one)! * kFlattened < largest && size.get(one)! >= kSmallest);
+  return small.length === 0 ? [group] : [group.filter((one) => !small.includes(one)), ...apart(small, factor)];
+}
 
 /// Curves of one unit on one common time axis. Where a curve has no value at a time it has a gap (null), nothing is made up.
 export function chartsOf(series: readonly Series[]): ChartData[] {
   const byUnit = new Map<string, Series[]>();
   for (const one of series) byUnit.set(one.unit, [...(byUnit.get(one.unit) ?? []), one]);
-  return [...byUnit].map(([unit, group]) => {
+  const groups = [...byUnit].flatMap(([unit, all]) => apart(all, shownUnit(unit)[0]).map((group, k) => ({ unit, group, smaller: k > 0 })));
+  return groups.map(({ unit, group, smaller }) => {
     const times = [...new Set(group.flatMap((one) => one.time))].sort((a, b) => a - b);
     const at = new Map(times.map((time, i) => [time, i]));
     const [factor, shown] = shownUnit(unit);
@@ -25,7 +36,7 @@ export function chartsOf(series: readonly Series[]): ChartData[] {
       one.time.forEach((time, i) => { column[at.get(time)!] = (one.value[i] ?? NaN) * factor; });
       columns.push(column);
     }
-    return { unit: shown, titles: group.map((one) => one.title), names: group.map((one) => one.name), columns };
+    return { unit: shown, smaller, titles: group.map((one) => one.title), names: group.map((one) => one.name), columns };
   });
 }
 
@@ -53,6 +64,17 @@ export function drawChart(holder: HTMLElement, data: ChartData, events: readonly
   return () => { observer.disconnect(); plot.destroy(); };
 }
 
+/// The words of marks at `x`, or none where they would run into the words before them or over `end`.
+export function labelsThatFit(marks: readonly { x: number; text: string }[], width: (text: string) => number, end: number): string[] {
+  let free = -Infinity;
+  return marks.map(({ x, text }) => {
+    const to = x + width(text);
+    if (x < free || to > end) return "";
+    free = to;
+    return text;
+  });
+}
+
 function markEvents(u: uPlot, events: readonly TimedEvent[]): void {
   const { ctx, bbox } = u;
   ctx.save();
@@ -60,18 +82,15 @@ function markEvents(u: uPlot, events: readonly TimedEvent[]): void {
   ctx.fillStyle = "#d5e2e0";
   ctx.setLineDash([3, 3]);
   ctx.font = `${Math.round(10 * devicePixelRatio)}px system-ui, sans-serif`;
-  let labelled = -Infinity;
-  for (const event of events) {
-    if (kFrequent.includes(event.name)) continue;
-    const x = u.valToPos(event.time, "x", true);
-    if (x < bbox.left || x > bbox.left + bbox.width) continue;
+  const end = bbox.left + bbox.width, room = 9 * devicePixelRatio;
+  const marks = events.filter((one) => !kFrequent.includes(one.name)).map((one) => ({ x: u.valToPos(one.time, "x", true), text: words(one.name) })).filter(({ x }) => x >= bbox.left && x <= end);
+  const labels = labelsThatFit(marks, (text) => ctx.measureText(text).width + room, end + room);
+  marks.forEach(({ x }, k) => {
     ctx.beginPath();
     ctx.moveTo(x, bbox.top);
     ctx.lineTo(x, bbox.top + bbox.height);
     ctx.stroke();
-    if (x - labelled < 70 * devicePixelRatio) continue; // leave room for the words
-    ctx.fillText(words(event.name), x + 3, bbox.top + 10 * devicePixelRatio);
-    labelled = x;
-  }
+    if (labels[k]) ctx.fillText(labels[k], x + 3, bbox.top + 10 * devicePixelRatio);
+  });
   ctx.restore();
 }

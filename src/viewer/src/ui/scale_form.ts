@@ -2,7 +2,7 @@
 import type { Scale, ScaleItem } from "../messages";
 import type { Rated } from "../net/api";
 import { h, setText } from "./dom";
-import { day } from "./format";
+import { day, reason } from "./format";
 import { better } from "./rating_words";
 
 const kSimulator = "simulator";
@@ -13,10 +13,10 @@ export class ScaleForm {
   private readonly given = h("div", { "aria-live": "polite" });
   private readonly form: HTMLFormElement;
 
-  /// `send` stores marks and answers with a refusal's text, or with nothing.
-  constructor(private readonly scale: Scale, private readonly send: (marks: Record<string, number>) => Promise<string>) {
+  /// `unready`: what must be mended above the form first, or nothing. `send` stores marks and answers with a refusal's text, or with nothing.
+  constructor(private readonly scale: Scale, private readonly unready: () => string, private readonly send: (marks: Record<string, number>) => Promise<string>) {
     const title = `scale-${scale.name}`;
-    this.form = h("form", { onsubmit: (event: Event) => { event.preventDefault(); void this.submit(); }, "aria-labelledby": title },
+    this.form = h("form", { novalidate: true, onsubmit: (event: Event) => { event.preventDefault(); void this.submit(); }, "aria-labelledby": title },
       ...scale.items.map((item) => this.question(item)), this.trouble,
       h("div", { class: "buttons" }, h("button", { type: "submit", class: "primary" }, "Store my marks")));
     this.element = h("section", { class: "panel", "data-scale": scale.name, "aria-labelledby": title }, h("h2", { id: title }, scale.title),
@@ -42,9 +42,17 @@ export class ScaleForm {
       const chosen = this.form.querySelector<HTMLInputElement>(`input[name="item-${CSS.escape(item.name)}"]:checked`);
       if (chosen) marks[item.name] = Number(chosen.value);
     }
-    const refusal = await this.send(marks);
+    const refusal = this.unready() || this.unmarked(marks) || (await this.send(marks));
     setText(this.trouble, refusal);
     if (!refusal) this.given.scrollIntoView({ block: "nearest" });
+  }
+
+  /// The trainer takes whole forms only.
+  private unmarked(marks: Record<string, number>): string {
+    const missing = this.scale.items.filter((item) => marks[item.name] === undefined);
+    if (missing.length === 0) return "";
+    this.form.querySelector<HTMLInputElement>(`input[name="item-${CSS.escape(missing[0].name)}"]`)?.focus();
+    return `Every item needs a mark. Still without one: ${missing.map((item) => item.title).join(", ")}.`;
   }
 
   /// Every rater's marks by this scale side by side, the simulator's last, if `rater` is among them.
@@ -65,7 +73,7 @@ export class ScaleForm {
     const sum = (one: Rated): string => items.every((item) => one.marks[item.name] !== undefined) ? String(items.reduce((total, item) => total + one.marks[item.name], 0)) : "–";
     const name = (one: Rated): string => one.rater === kSimulator ? "simulator (estimate)" : one.rater;
     return h("table", {}, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Item"), ...raters.map((one) => h("th", { scope: "col" }, name(one), h("span", { class: "unit" }, day(one.stored)))), h("th", { scope: "col" }, "What the estimate rests on"))),
-      h("tbody", {}, ...items.map((item) => h("tr", {}, h("th", { scope: "row" }, item.title), ...raters.map((one) => h("td", { class: "number" }, mark(one, item))), h("td", { class: "quiet" }, item.why))),
+      h("tbody", {}, ...items.map((item) => h("tr", {}, h("th", { scope: "row" }, item.title), ...raters.map((one) => h("td", { class: "number" }, mark(one, item))), h("td", { class: "quiet" }, reason(item.why)))),
         h("tr", { class: "sum" }, h("th", { scope: "row" }, "Sum"), ...raters.map((one) => h("td", { class: "number" }, sum(one))), h("td", {}, ""))));
   }
 }

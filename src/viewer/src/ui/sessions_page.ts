@@ -1,25 +1,39 @@
 // Every recorded session, newest first.
 import type { App, Page } from "../app";
-import type { SessionInfo } from "../messages";
+import type { ServerMessage, SessionInfo } from "../messages";
 import { sessions } from "../net/api";
 import { h } from "./dom";
 import { clock, day } from "./format";
+import { askBeforeReplays } from "./running_task";
 
 export const kInputNames: Record<string, string> = { pointer: "pointer", demo: "demonstration", device: "attached instruments" };
+
+/// Identifier of the session that is being recorded, or null.
+export function runningNow(app: App): string | null {
+  return app.session?.state === "running" ? app.session.session : null;
+}
 
 export class SessionsPage implements Page {
   readonly title = "Sessions";
   readonly element = h("div", { class: "page sessions" });
 
-  constructor(_app: App) {
+  private running: string | null = null;
+
+  constructor(private readonly app: App) {
+    askBeforeReplays(app, this.element);
     this.element.append(h("h1", {}, "Sessions"), h("p", { role: "status" }, "Loading…"));
     void this.load();
   }
 
+  onmessage(message: ServerMessage): void {
+    if (message.type === "session_state" && runningNow(this.app) !== this.running) void this.load();
+  }
+
   private async load(): Promise<void> {
+    this.running = runningNow(this.app);
     try {
       const { sessions: list } = await sessions();
-      this.element.replaceChildren(h("h1", {}, "Sessions"), h("p", { class: "buttons" }, h("a", { class: "button", href: "#/rating" }, "For raters"), h("a", { class: "button", href: "#/agreement" }, "Agreement of raters")), list.length > 0 ? sessionTable(list) : h("p", {}, "Nothing has been recorded yet."));
+      this.element.replaceChildren(h("h1", {}, "Sessions"), h("p", { class: "buttons" }, h("a", { class: "button", href: "#/rating" }, "For raters"), h("a", { class: "button", href: "#/agreement" }, "Agreement of raters")), list.length > 0 ? sessionTable(list, this.app) : h("p", {}, "Nothing has been recorded yet."));
     } catch (error) {
       this.element.replaceChildren(h("h1", {}, "Sessions"), h("p", { role: "alert" }, `The list cannot be read: ${(error as Error).message}.`),
         h("button", { onclick: () => void this.load() }, "Try again"));
@@ -27,17 +41,25 @@ export class SessionsPage implements Page {
   }
 }
 
-export function sessionTable(list: SessionInfo[]): HTMLElement {
+export function sessionTable(list: SessionInfo[], app: App): HTMLElement {
+  const now = runningNow(app);
   return h("div", { class: "panel" }, h("table", {},
     h("thead", {}, h("tr", {}, ...["Started", "Task", "Input", "Code", "Time", "Points", "Verdict", ""].map((name) => h("th", { scope: "col" }, name)))),
-    h("tbody", {}, ...list.map(row))));
+    h("tbody", {}, ...list.map((one) => row(one, one.id === now)))));
 }
 
-function row(one: SessionInfo): HTMLElement {
-  const verdict = one.passed === null ? (one.finished ? "not scored" : "cut short") : one.passed ? "✓ passed" : "✕ not passed";
+function verdictOf(one: SessionInfo, running: boolean): string {
+  if (running) return "running";
+  if (one.passed === null) return one.finished ? "not scored" : "cut short";
+  if (one.input === "demo") return "demonstration"; // nobody passed
+  return one.passed ? "✓ passed" : "✕ not passed";
+}
+
+/// `running`: not written to its end yet, so that there is nothing to replay.
+function row(one: SessionInfo, running: boolean): HTMLElement {
   const id = encodeURIComponent(one.id), title = one.title || one.task;
   return h("tr", { "data-session": one.id }, h("td", {}, day(one.started)), h("th", { scope: "row" }, title), h("td", {}, kInputNames[one.input] ?? one.input), h("td", {}, one.code),
-    h("td", { class: "number" }, clock(one.seconds)), h("td", { class: "number" }, one.total === null ? "–" : one.total.toFixed(0)), h("td", {}, verdict),
-    h("td", { class: "links" }, h("a", { class: "button", href: `#/replay/${id}`, "aria-label": `Replay ${title}` }, "Replay"),
+    h("td", { class: "number" }, running ? "–" : clock(one.seconds)), h("td", { class: "number" }, one.total === null ? "–" : one.total.toFixed(0)), h("td", {}, verdictOf(one, running)),
+    h("td", { class: "links" }, running ? null : h("a", { class: "button", href: `#/replay/${id}`, "aria-label": `Replay ${title}` }, "Replay"),
       one.total === null ? null : h("a", { class: "button", href: `#/result/${id}`, "aria-label": `Result of ${title}` }, "Result")));
 }

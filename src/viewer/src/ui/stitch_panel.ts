@@ -29,12 +29,24 @@ export function tails(stitch: Pick<Stitch, "tail_mm" | "short_tail_mm">): string
 const inner = (stitch: Stitch): string => both((stitch.bites_inner_m ?? [null, null]).map((value) => (value === null ? null : 1e6 * value)), 0);
 const layers = (stitch: Stitch): string => (stitch.depth_layers?.length ? stitch.depth_layers.join(", ") : "–");
 
+/// What the value of a lapse measures (#: the value); "name unit" where a lapse is found by more than one.
+const kLapseTexts: Record<string, string> = {
+  "oblique": "turned by # from straight across the cut", "wide-bite": "# wide", "partial-thickness": "goes through # of the wall", "wall-tear": "torn by #",
+  "too-tight": "thread pulls # of bite", "loose-knot m": "# of slack thread in the knot and loop", "loose-knot thicknesses": "edges # apart", "disrupted-line": "edges # apart up to the next stitch",
+  "unequal-spacing": "spaces vary by # of their mean", "back-wall": "left the lumen # round from where it came in", "thread-in-lumen": "# of thread in the lumen", "edge-overlap": "edges overlap by #",
+};
+
+function lapseNumber({ name, value, unit }: Lapse): string {
+  if (value === null) return "";
+  if (unit === "thicknesses") return `${value.toFixed(1)} wall thicknesses`;
+  if (unit === "deg") return `${value.toFixed(0)}°`;
+  if (unit === "share" || name === "unequal-spacing") return `${(100 * value).toFixed(0)} %`;
+  return unit === "N/m" ? `${value.toFixed(0)} mN for each mm` : quantity(value, unit);
+}
+
 export function lapseValue(lapse: Lapse): string {
-  if (lapse.value === null) return "";
-  if (lapse.unit === "thicknesses") return `${lapse.value.toFixed(1)} wall thicknesses`;
-  if (lapse.unit === "deg") return `${lapse.value.toFixed(0)}°`;
-  if (lapse.unit === "share") return `${(100 * lapse.value).toFixed(0)} % of the wall`;
-  return quantity(lapse.value, lapse.unit);
+  const number = lapseNumber(lapse), text = kLapseTexts[`${lapse.name} ${lapse.unit}`] ?? kLapseTexts[lapse.name];
+  return number && text ? text.replace("#", number) : number;
 }
 
 export function ofStitch(lapses: readonly Lapse[] | undefined, stitch: number): Lapse[] {
@@ -46,8 +58,8 @@ export function replayAt(id: string, time: number | null, stitch = -1): string {
   return `#/replay/${encodeURIComponent(id)}/${(time ?? 0).toFixed(2)}${stitch >= 0 ? `/stitch-${stitch + 1}` : ""}`;
 }
 
-const kColumns: [string, string][] = [["Stitch", ""], ["Bite", "both sides, wall thicknesses"], ["Inside", "µm, bites where it left and came in"], ["Entry", "°, of the needle to the surface"], ["Exit", "°, of the needle to the surface"], ["Oblique", "° to the axis"],
-  ["Depth", "% of the wall"], ["Layers", "of the thinner side"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Throws", "of the knot"], ["Knot", ""], ["Tail", "mm, cut ends"], ["Lapses", ""]];
+const kColumns: [string, string][] = [["Stitch", ""], ["Lapses", ""], ["Bite", "both sides, wall thicknesses"], ["Inside", "µm, bites where it left and came in"], ["Entry", "°, of the needle to the surface"], ["Exit", "°, of the needle to the surface"], ["Oblique", "° to the axis"],
+  ["Depth", "% of the wall"], ["Layers", "of the thinner side"], ["Next", "mm along the cut"], ["Tension", "mN, left in the thread"], ["Peak", "mN, largest pull on the wall"], ["Torn", "µm"], ["Throws", "of the knot"], ["Knot", ""], ["Tail", "mm, cut ends"]];
 
 function row(stitch: Stitch, k: number, next: number | null | undefined, lapses: Lapse[], id: string | null): HTMLElement {
   const name = `Stitch ${k + 1}`;
@@ -56,7 +68,7 @@ function row(stitch: Stitch, k: number, next: number | null | undefined, lapses:
     cell(next, 1000, 2), cell(stitch.tension_n, 1000, 1), cell(stitch.peak_force_n, 1000, 1), cell(stitch.torn_m, 1e6, 0),
     cell(stitch.throws, 1, 0), stitch.knot ? words(stitch.knot) : "–", tails(stitch)];
   return h("tr", { "data-stitch": k }, h("th", { scope: "row" }, id ? h("a", { href: replayAt(id, stitch.time, k), title: "Show this stitch in the replay" }, name) : name),
-    ...numbers.map((text) => h("td", { class: "number" }, text)), h("td", { class: lapses.length > 0 ? "alarm" : "quiet" }, ...found));
+    h("td", { class: lapses.length > 0 ? "alarm" : "quiet" }, ...found), ...numbers.map((text) => h("td", { class: "number" }, text)));
 }
 
 /// In the order round the cut, so that "next" is the neighbour.
@@ -66,7 +78,8 @@ function table(result: Result, stitches: readonly Stitch[], id: string | null): 
   return h("table", { class: "stitches" }, h("thead", {}, h("tr", {}, ...kColumns.map(([name, unit]) => h("th", { scope: "col" }, name, unit ? h("span", { class: "unit" }, unit) : null)))), h("tbody", {}, ...rows));
 }
 
-function lapseList(lapses: readonly Lapse[], id: string | null): HTMLElement {
+function lapseList(lapses: readonly Lapse[], stitches: number, id: string | null): HTMLElement {
+  if (lapses.length === 0 && stitches === 0) return h("p", {}, icon.info(), " No stitch: nothing to look at.");
   if (lapses.length === 0) return h("p", {}, icon.pass(), " No lapse was found.");
   return h("ul", { class: "lapses" }, ...lapses.map((lapse) => {
     const critical = lapse.critical === true, where = lapse.stitch < 0 ? "the whole line" : `stitch ${lapse.stitch + 1}`;
@@ -81,8 +94,8 @@ export function stitchSection(result: Result, id: string | null): HTMLElement | 
   const { stitches, lapses } = result;
   if (!stitches) return null;
   return h("section", { class: "panel stitchpanel", "aria-labelledby": "stitches-title" }, h("h2", { id: "stitches-title" }, "Stitch by stitch"),
-    stitches.length > 0 ? h("div", { class: "long" }, table(result, stitches, id)) : h("p", { class: "quiet" }, "No stitch was made."),
-    h("h2", {}, "Lapses"), lapseList(lapses ?? [], id), id && (lapses ?? []).length > 0 ? h("p", {}, h("a", { class: "button", href: `#/moments/${encodeURIComponent(id)}` }, "Pictures of the moments")) : null, h("p", { class: "quiet" }, `By the rules of: ${result.lapse_rules ?? "–"}. All marks are estimates of the simulator.`));
+    ...(stitches.length > 0 ? [h("p", { class: "quiet" }, result.leak ? "In order round the vessel." : "In order along the cut."), h("div", { class: "long wide", tabindex: 0, role: "group", "aria-labelledby": "stitches-title" }, table(result, stitches, id))] : [h("p", { class: "quiet" }, "No stitch was made.")]),
+    h("h2", {}, "Lapses"), lapseList(lapses ?? [], stitches.length, id), id && (lapses ?? []).length > 0 ? h("p", {}, h("a", { class: "button", href: `#/moments/${encodeURIComponent(id)}` }, "Pictures of the moments")) : null, h("p", { class: "quiet" }, `By the rules of: ${result.lapse_rules ?? "–"}. All marks are estimates of the simulator.`));
 }
 
 /// Leak by sector as bars, with narrowing and flow.
