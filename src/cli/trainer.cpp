@@ -268,9 +268,8 @@ void Trainer::begin_recording(const StartMessage& start, const Setup& setup, con
   if (!store_) return;
   try {
     const std::lock_guard lock(store_mutex_);
-    const std::string code = start.input == "demo" ? "" : start.code;  // a demonstration is nobody's
-    const StoreEntry entry = store_->begin(start.task, code);
-    recorder_ = make_recorder(store_->file_of(entry.id), setup, inputs.description, code, inputs.calibration);
+    const StoreEntry entry = store_->begin(start.task, start.code);
+    recorder_ = make_recorder(store_->file_of(entry.id), setup, inputs.description, start.code, inputs.calibration);
     view_.session = entry.id;
     view_.recording = true;
   } catch (const std::exception& error) {

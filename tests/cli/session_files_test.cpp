@@ -88,5 +88,22 @@ TEST_F(SessionFiles, StoredTextThatIsNoResultGivesNoMessage) {
   for (const char* text : {"", "{", "[]", "null", "{\"task\": 1}"}) EXPECT_EQ(result_message(std::string(text), "s"), "") << text;
 }
 
+TEST_F(SessionFiles, ARecordingTellsUnderWhichConditionsItWasMade) {
+  const std::string plain = (folder_ / "plain.filum-session").string(), exam = (folder_ / "exam.filum-session").string();
+  make_recorder(plain, load_setup(FILUM_SOURCE_DIR, "tip-hold"), "demonstrator")->close();
+  {
+    const auto recorder = make_recorder(exam, load_setup(FILUM_SOURCE_DIR, "press-to-target", "", 2.5), "pointer");
+    recorder->record_event({0, 0.0, "exam", -1, 1.0, "-"});
+    recorder->close();
+  }
+  const Conditions a = read_conditions(RecordingReader(plain)), b = read_conditions(RecordingReader(exam));
+  EXPECT_EQ(a.input, "demo");
+  EXPECT_FALSE(a.exam);
+  EXPECT_EQ(a.stiffness, 1.0);
+  EXPECT_EQ(b.input, "pointer");
+  EXPECT_TRUE(b.exam);
+  EXPECT_EQ(b.stiffness, 2.5);
+}
+
 }  // namespace session_files_test
 }  // namespace filum

@@ -42,6 +42,8 @@ TEST(TrainerApi, SessionsAreListedWithTaskInputCodeAndScore) {
     const bool sound = s.at("id") == store.id;
     EXPECT_EQ(s.at("task"), sound ? "tip-hold" : "knot-square");
     EXPECT_EQ(s.at("input"), sound ? "demo" : "");
+    EXPECT_EQ(s.at("exam"), false);
+    EXPECT_EQ(s.at("stiffness"), 1.0);
     EXPECT_EQ(s.at("total"), sound ? json(store.total) : json(nullptr));
     EXPECT_NE(s.at("title"), s.at("task"));
   }

@@ -173,20 +173,26 @@ TEST(Store, RebuildGivesUnscoredSessionsTheirLength) {
   EXPECT_FALSE(store.find("x")->scored);
 }
 
-TEST(Store, SessionsThatWereCutShortGetTheLengthOfWhatIsStored) {
+/// Of another program that records into the store, or of one that was killed before it told the store.
+TEST(Store, SessionsThatWereLeftUnfinishedAreReadAnewOnOpening) {
   const Folder folder;
-  std::string id, empty;
+  std::string id, empty, scored;
   {
     Store store(folder.file("s"));
     id = store.begin("knot-square", "").id;
     empty = store.begin("knot-square", "B").id;
+    scored = store.begin("knot-square", "C").id;
     synthetic::write_recording(store.file_of(id), 500, false);
+    synthetic::write_recording(store.file_of(scored), 500);
     EXPECT_EQ(store.find(id)->seconds, 0.0);
   }  // killed before finish()
   Store store(folder.file("s"));
   EXPECT_NEAR(store.find(id)->seconds, 1.0, 1e-12);
-  EXPECT_FALSE(store.find(id)->finished);
+  EXPECT_FALSE(store.find(id)->scored);
   EXPECT_EQ(store.find(empty)->seconds, 0.0);
+  EXPECT_FALSE(store.find(empty)->finished);
+  EXPECT_TRUE(store.find(scored)->finished);
+  EXPECT_EQ(store.find(scored)->total, 87.5);
   store.finish(id, std::nullopt);
   EXPECT_NEAR(store.find(id)->seconds, 1.0, 1e-12) << "ended without a score";
 }

@@ -1,5 +1,5 @@
 import { ResultPage } from "@viewer/ui/result_page";
-import { SessionsPage, sessionTable } from "@viewer/ui/sessions_page";
+import { madeUnder, SessionsPage, sessionTable } from "@viewer/ui/sessions_page";
 import { TasksPage } from "@viewer/ui/tasks_page";
 import type { App } from "@viewer/app";
 import type { Result, ServerMessage, SessionInfo } from "@viewer/messages";
@@ -89,4 +89,9 @@ it("the lists follow when a session begins or ends", async () => {
     page.onmessage({ type: "session_state" } as ServerMessage);
     expect(await verdict()).toBe("running");
   }
+});
+
+it("says under what conditions a session was made", () => {
+  expect(madeUnder({ input: "pointer", exam: false, stiffness: 1 })).toBe("pointer");
+  expect(madeUnder({ input: "device", exam: true, stiffness: 2.5 })).toBe("attached instruments, exam, brain 2.5 times as stiff");
 });

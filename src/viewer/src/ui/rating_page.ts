@@ -4,12 +4,14 @@ import type { SessionInfo } from "../messages";
 import { sessions, tasks } from "../net/api";
 import { h } from "./dom";
 import { clock, day } from "./format";
+import { askBeforeReplays } from "./running_task";
 
 export class RatingPage implements Page {
   readonly title = "For raters";
   readonly element = h("div", { class: "page sessions" });
 
-  constructor(_app: App) {
+  constructor(app: App) {
+    askBeforeReplays(app, this.element);
     this.element.append(h("h1", {}, "For raters"), h("p", { role: "status" }, "Loading…"));
     void this.load();
   }

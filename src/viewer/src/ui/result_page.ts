@@ -4,13 +4,14 @@ import type { Result, Scale, Series, ServerMessage } from "../messages";
 import { session as fetchSession } from "../net/api";
 import { analysisPanel } from "./analysis_panel";
 import { h } from "./dom";
-import { clock, listed, kKnotTitles, kLaboratory, kProposal, measured, milliNewton, quantity, reason, words, eventWords } from "./format";
+import { clock, day, listed, kKnotTitles, kLaboratory, kProposal, measured, milliNewton, quantity, reason, words, eventWords } from "./format";
 import { PathPlot } from "./path_plot";
 import { pressureMapPanel } from "./pressure_map";
 import { icon, knotPicture } from "./pictures";
 import { chartsOf, drawChart, type ChartData } from "./plots";
 import { better } from "./rating_words";
 import { askBeforeReplays, goToReplay } from "./running_task";
+import { madeUnder } from "./sessions_page";
 import { clampSection, factorSection, handlingSection, joinSection, stitchSection } from "./stitch_panel";
 
 /// Why it is not passed. Results of older sessions may not say.
@@ -38,6 +39,7 @@ export class ResultPage implements Page {
   private cleanup: (() => void)[] = [];
   private shown: Result | null = null;
   private demonstration = false;
+  private made = ""; // when, by whom and under what conditions
 
   constructor(private readonly app: App, private readonly id: string) {
     askBeforeReplays(app, this.element);
@@ -52,7 +54,9 @@ export class ResultPage implements Page {
 
   /// Of the task that has just ended.
   private showLast(result: Result): void {
-    this.demonstration = this.app.session?.input === "demo";
+    const now = this.app.session;
+    this.demonstration = now?.input === "demo";
+    this.made = now?.input ? madeUnder({ input: now.input, exam: now.exam }) : "";
     this.show(result);
   }
 
@@ -63,6 +67,7 @@ export class ResultPage implements Page {
     try {
       const { session, result } = await fetchSession(this.id);
       this.demonstration = session.input === "demo";
+      this.made = [day(session.started), session.code, madeUnder(session)].filter((word) => word !== "").join(" · ");
       if (result) this.show(result);
       else this.element.replaceChildren(h("h1", {}, session.title), h("p", {}, "This session was not scored."), this.replayLink(this.id));
     } catch (error) {
@@ -82,7 +87,7 @@ export class ResultPage implements Page {
     const total = h("div", { class: "total" }, h("span", { class: "points" }, result.score.total.toFixed(0)), h("span", { class: "of" }, `of ${result.score.max_total.toFixed(0)} points`),
       h("div", { class: "track", "aria-hidden": "true" }, h("div", { class: "fill", style: `transform:scaleX(${share.toFixed(3)})` })));
     this.element.replaceChildren(
-      h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${timeOf(result)}`)), this.verdict(result), total,
+      h("div", { class: "resulthead" }, h("div", {}, h("h1", {}, result.title), h("p", { class: "quiet" }, `Time ${timeOf(result)}${this.made ? ` · ${this.made}` : ""}`)), this.verdict(result), total,
         h("div", { class: "buttons" }, id ? this.replayLink(id) : h("span", { class: "quiet" }, "not recorded"), h("a", { class: "button primary", href: "#/" }, "Tasks"))),
       ...(result.passed ? [] : [reasons(result.verdict ?? [])]),
       h("div", { class: "resultgrid" }, this.scoreTable(result), this.knotCard(result), this.eventCard(result, id)),

@@ -8,6 +8,12 @@ import { askBeforeReplays } from "./running_task";
 
 export const kInputNames: Record<string, string> = { pointer: "pointer", demo: "demonstration", device: "attached instruments" };
 
+/// Who moved the instruments, and what was set: "pointer, exam, brain 2.5 times as stiff".
+export function madeUnder(one: { input: string; exam: boolean; stiffness?: number }): string {
+  const words = [kInputNames[one.input] ?? one.input, one.exam ? "exam" : "", (one.stiffness ?? 1) === 1 ? "" : `brain ${+one.stiffness!.toFixed(2)} times as stiff`];
+  return words.filter((word) => word !== "").join(", ");
+}
+
 /// Identifier of the session that is being recorded, or null.
 export function runningNow(app: App): string | null {
   return app.session?.state === "running" ? app.session.session : null;
@@ -58,7 +64,7 @@ function verdictOf(one: SessionInfo, running: boolean): string {
 /// `running`: not written to its end yet, so that there is nothing to replay.
 function row(one: SessionInfo, running: boolean): HTMLElement {
   const id = encodeURIComponent(one.id), title = one.title || one.task;
-  return h("tr", { "data-session": one.id }, h("td", {}, day(one.started)), h("th", { scope: "row" }, title), h("td", {}, kInputNames[one.input] ?? one.input), h("td", {}, one.code),
+  return h("tr", { "data-session": one.id }, h("td", {}, day(one.started)), h("th", { scope: "row" }, title), h("td", {}, madeUnder(one)), h("td", {}, one.code),
     h("td", { class: "number" }, running ? "–" : clock(one.seconds)), h("td", { class: "number" }, one.total === null ? "–" : one.total.toFixed(0)), h("td", {}, verdictOf(one, running)),
     h("td", { class: "links" }, running ? null : h("a", { class: "button", href: `#/replay/${id}`, "aria-label": `Replay ${title}` }, "Replay"),
       one.total === null ? null : h("a", { class: "button", href: `#/result/${id}`, "aria-label": `Result of ${title}` }, "Result")));
