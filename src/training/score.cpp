@@ -38,7 +38,7 @@ std::string band_text(const RubricItem& item) {
   if (low && high) text += "from " + shown(b.full_from, item.unit) + " to " + shown(b.full_to, item.unit);
   if (low && !high) text += "from " + shown(b.full_from, item.unit);
   if (!low && high) text += "up to " + shown(b.full_to, item.unit);
-  if (low && b.zero_below < b.full_from) text += ", none below " + shown(b.zero_below, item.unit);
+  if (low && b.zero_below < b.full_from) text += (b.zero_below == 0.0 ? ", none at " : ", none below ") + shown(b.zero_below, item.unit);
   if (high && b.zero_above > b.full_to) text += ", none from " + shown(b.zero_above, item.unit);
   return text;
 }
