@@ -170,6 +170,37 @@ describe("a blind step", () => {
   });
 });
 
+describe("an exam", () => {
+  const colours = (seen: Frame): number[] => {
+    const brain = new Brain(shape, true);
+    brain.update(seen);
+    const colour = (brain.group.children[0] as THREE.Mesh<THREE.BufferGeometry>).geometry.getAttribute("color");
+    return [0, 1, 2, 3].map((i) => colour.getW(i));
+  };
+  const visible = (panel: BrainPanel, what: string) => [...panel.element.querySelectorAll<HTMLElement>(what)].filter((one) => !one.closest("[hidden]"));
+
+  it("hides pressure, colours, legend, cross-section and their buttons from the first frame on", () => {
+    const panel = new BrainPanel(scene, () => {}, true), seen = frame([40, 40, 40, 40]);
+    for (const when of ["before", "after"]) {
+      expect(visible(panel, "button, .brainmeter, .brainlegend, .section"), when).toEqual([]);
+      expect(colours(seen), when).toEqual([0, 0, 0, 0]);
+      panel.show(seen, scene);
+    }
+    expect(visible(panel, "output, p").map((one) => one.textContent).join()).not.toMatch(/24\.0|0\.42 N/);
+    expect(panel.element.textContent).toContain("Exam: pressure and colours are not shown.");
+  });
+  it("leaves nothing hidden in the next task, nor shown in a task after it", () => {
+    const seen = frame([40, 40, 40, 40]);
+    new BrainPanel(scene, () => {}, true);
+    const next = new BrainPanel(scene, () => {});
+    expect(colours(seen)[0]).toBeGreaterThan(0.9);
+    expect(visible(next, "button").length).toBeGreaterThan(3);
+    const again = new BrainPanel(scene, () => {}, true);
+    expect(visible(again, "button")).toEqual([]);
+    pressureView.blind = false;
+  });
+});
+
 describe("retractor's arm", () => {
   it("is there while the blade is held by it", () => {
     const brain = new Brain(shape, true), arms = () => brain.group.children.filter((c) => c instanceof THREE.Group && c.children.length === 5);

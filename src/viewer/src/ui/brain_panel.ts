@@ -48,10 +48,11 @@ export class BrainPanel {
   private readonly note = h("p", { class: "note" }, "");
   private readonly modes: HTMLButtonElement[];
   private readonly section: SectionView;
-  private readonly hidden = h("p", { class: "note" }, "By feel: the pressure is not shown in this step.");
-  private readonly shown: HTMLElement[]; // what a blind step hides
+  private readonly hidden = h("p", { class: "note" }, "");
+  private readonly shown: HTMLElement[]; // what a blind step or an exam hides
 
-  constructor(scene: Scene, private readonly redraw: () => void) {
+  /// `exam`: blind from beginning to end.
+  constructor(scene: Scene, private readonly redraw: () => void, private readonly exam = false) {
     this.section = new SectionView(scene, redraw);
     this.rows = (scene.brain?.blades ?? []).map(() => h("output", { class: "brainrow" }, ""));
     this.forms = (scene.brain?.blades ?? []).map(() => h("output", { class: "brainrow" }, ""));
@@ -63,8 +64,9 @@ export class BrainPanel {
       ramp, h("div", { class: "brainticks" }, ...["0", "10", "20", "30", "40 mmHg"].map((t) => h("span", {}, t))));
     const colours = h("div", { class: "segments", role: "group", "aria-label": "Colours of the pressure" }, ...this.modes);
     this.shown = [this.pressure.element, legend, this.dose.element, ...this.rows, colours, this.section.element];
-    this.hidden.hidden = true;
+    setText(this.hidden, exam ? "Exam: pressure and colours are not shown." : "By feel: the pressure is not shown in this step.");
     this.element.append(h("h2", {}, "Retraction"), this.hidden, this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows, ...this.forms, colours, this.section.element, this.note);
+    this.blind(exam); // before the first frame is drawn; another panel may have left it otherwise
     this.choose(pressureView.mode);
   }
 
@@ -75,7 +77,6 @@ export class BrainPanel {
   }
 
   private blind(on: boolean): void {
-    if (pressureView.blind === on) return;
     pressureView.blind = on;
     this.hidden.hidden = !on;
     for (const one of this.shown) one.hidden = on;
@@ -83,7 +84,7 @@ export class BrainPanel {
 
   show(frame: Frame, scene: Scene): void {
     const r = frame.task?.retraction, brain = frame.brain;
-    this.blind(r?.blind ?? false);
+    this.blind(this.exam || (r?.blind ?? false));
     this.section.show(frame);
     if (r) {
       pressureView.threshold = r.bands[2];

@@ -110,7 +110,7 @@ export class LivePage implements Page {
     const end = h("button", { class: "end", onclick: () => { this.app.send({ type: "stop" }); } }, "End task");
     const back = h("button", { class: "quietbutton", onclick: () => this.focus() }, "To the field");
     this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), this.events), h("div", { class: "buttons" }, end, back));
-    this.brain = scene.brain ? new BrainPanel(scene, () => this.view.redraw()) : null;
+    this.brain = scene.brain ? new BrainPanel(scene, () => this.view.redraw(), this.app.session?.exam) : null;
     this.tissue?.dispose();
     this.tissue = scene.tissue && !this.app.session?.exam ? new TissuePanel((message) => this.app.send(message), scene.guides?.filter((guide) => guide.in.path.length > 0).length ?? 0, this.view.guidesShown, (on) => this.view.showGuides(on)) : null;
     if (this.tissue) this.right.append(this.tissue.element);
