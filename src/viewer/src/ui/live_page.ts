@@ -23,6 +23,7 @@ export class LivePage implements Page {
   private readonly right = h("aside", { class: "right" });
   private readonly over = h("div", { class: "over" });
   private readonly hand = h("output", { class: "hand", "aria-live": "polite" }, "");
+  private readonly back = h("button", { class: "quietbutton", onclick: () => this.focus() }, "To the field");
   private readonly take = h("button", { class: "take", hidden: true, onclick: () => { this.app.send({ type: "take_control" }); this.focus(); } }, "Take control");
   private readonly events = h("ul", { class: "events", "aria-label": "What happened" });
   private readonly warnings = new WarningList();
@@ -75,7 +76,7 @@ export class LivePage implements Page {
 
   onkey(event: KeyboardEvent): boolean {
     if (event.key === "Escape" && document.activeElement === this.view.surface) {
-      (this.left.querySelector("button") ?? this.element.querySelector("button"))?.focus();
+      this.leaveField();
       return true;
     }
     return microscopeKey(this.view, event, this.pointer.hands.active, this.element);
@@ -86,6 +87,13 @@ export class LivePage implements Page {
     this.pointer.dispose();
     this.unhook();
     this.view.stop();
+  }
+
+  /// Out of the field by keyboard, to where a Space that was meant for the grip does no harm; with the panels hidden they are shown again.
+  private leaveField(): void {
+    this.element.classList.remove("bare");
+    const to = this.back.isConnected ? this.back : this.element.querySelector<HTMLElement>(".over a, .optics button");
+    to?.focus();
   }
 
   private get steering(): boolean {
@@ -108,8 +116,7 @@ export class LivePage implements Page {
     this.steps = new StepPanel(scene.title);
     this.forces = new ForcePanel(scene);
     const end = h("button", { class: "end", onclick: () => { this.app.send({ type: "stop" }); } }, "End task");
-    const back = h("button", { class: "quietbutton", onclick: () => this.focus() }, "To the field");
-    this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), this.events), h("div", { class: "buttons" }, end, back));
+    this.left.append(this.steps.element, h("section", { class: "panel" }, h("h3", {}, "What happened"), this.events), h("div", { class: "buttons" }, this.back, end));
     this.brain = scene.brain ? new BrainPanel(scene, () => this.view.redraw(), this.app.session?.exam) : null;
     this.tissue?.dispose();
     this.tissue = scene.tissue && !this.app.session?.exam ? new TissuePanel((message) => this.app.send(message), scene.guides?.filter((guide) => guide.in.path.length > 0).length ?? 0, this.view.guidesShown, (on) => this.view.showGuides(on)) : null;
