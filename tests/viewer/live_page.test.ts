@@ -1,6 +1,6 @@
 // The page of a running task: where Escape leads, and what is shown when no task runs.
 import { LivePage } from "@viewer/ui/live_page";
-import { fakeApp, scene, state } from "./pages";
+import { fakeApp, frame, replayOf, resultFor, scene, state } from "./pages";
 
 let app: ReturnType<typeof fakeApp>, page: LivePage;
 const text = () => page.element.querySelector(".over")!.textContent!;
@@ -28,5 +28,49 @@ describe("Escape in the field", () => {
     page.element.classList.add("bare");
     escape();
     expect(page.element.classList.contains("bare")).toBe(false);
+  });
+});
+
+describe("without a task", () => {
+  it("shows nothing of a replay that was left", () => {
+    app.hear(state("replay", "s1"), scene, resultFor("s1"));
+    open();
+    expect(page.element.querySelector(".steps")).toBeNull();
+    app.hear(state("idle", "s1"));
+    expect(text()).toContain("No task is running.");
+    expect(page.element.querySelectorAll("aside *").length).toBe(0);
+    app.hear(replayOf("s1")); // one that was on its way
+    expect(app.gone).toEqual([]);
+  });
+  it("takes the result of a recording that is opened elsewhere for no end of a task, and goes there", () => {
+    open();
+    app.hear(state("loading", "s2", { in_control: false }), scene, resultFor("s2"));
+    app.hear(state("replay", "s2", { in_control: false }), replayOf("s2"));
+    expect(text()).not.toContain("Task ended");
+    expect(app.gone).toEqual(["#/replay/s2"]);
+  });
+  it("says why a task did not start, also when the trainer rests then", () => {
+    open();
+    app.hear(state("loading", null), { type: "error", code: "failed", what: "No file.", advice: "" }, state("idle", null));
+    expect(text()).toContain("No file.");
+  });
+});
+
+describe("a page that is loaded again", () => {
+  it("learns from the state after the scene that this is an exam", () => {
+    open();
+    app.hear({ ...scene, tissue: { name: "card" } } as unknown as typeof scene);
+    expect(page.element.querySelector(".steps")).toBeNull();
+    app.hear(state("running", "s1", { exam: true }), frame());
+    expect(page.element.querySelector(".steps")).not.toBeNull();
+    expect(page.element.querySelector(".tissuepanel")).toBeNull();
+  });
+  it("shows the end that came in the meantime, once", () => {
+    open();
+    app.hear(scene, resultFor("s1"), state("ended", "s1"));
+    expect(text()).toContain("Task ended");
+    const link = page.element.querySelector(".over a");
+    app.hear(state("ended", "s1", { clients: 2 }), state("ended", "s1", { exam: true }));
+    expect(page.element.querySelector(".over a")).toBe(link);
   });
 });

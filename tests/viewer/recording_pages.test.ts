@@ -1,0 +1,87 @@
+// Pages of one recording in a trainer that tells every browser about every session.
+import { MomentsPage } from "@viewer/ui/moments_page";
+import { ReplayPage } from "@viewer/ui/replay_page";
+import { fakeApp, frame, replayOf, resultFor, scene, state } from "./pages";
+
+const refused = { type: "error" as const, code: "not-in-control", what: "Another browser is in control.", advice: "" };
+const lapses = [{ name: "wide-bite", stitch: 0, time: 20, value: 4.6, unit: "thicknesses" }];
+let app: ReturnType<typeof fakeApp>, page: ReplayPage | MomentsPage;
+const text = () => page.element.textContent!;
+const press = (label: string) => [...page.element.querySelectorAll("button")].find((one) => one.textContent === label)!.click();
+beforeEach(() => { app = fakeApp(); });
+afterEach(() => page.dispose());
+
+describe("a replay", () => {
+  const open = () => { page = app.show(new ReplayPage(app.app, "mine")); };
+  const opened = () => app.hear(state("loading", "mine"), scene, resultFor("mine"), state("replay", "mine"), replayOf("mine"), frame());
+
+  it("draws nothing of the replay that was open before it", () => {
+    open();
+    app.hear(scene, resultFor("other"), replayOf("other", 12), state("replay", "other"), frame(12));
+    expect(text()).toContain("Opening the recording…");
+    expect(page.element.querySelector(".events, .steps")).toBeNull();
+    expect(page.element.classList.contains("foreign")).toBe(true);
+    opened();
+    expect(text()).not.toContain("Opening the recording…");
+    expect(page.element.querySelector(".events")).not.toBeNull();
+    expect(page.element.classList.contains("foreign")).toBe(false);
+  });
+  it("that is refused says so over somebody else's task, and takes control", () => {
+    open();
+    app.hear(scene, state("running", "other", { in_control: false }), frame(), refused);
+    expect(text()).toContain("Another browser is in control. Its task ends if you take control.");
+    app.sent.length = 0;
+    press("Take control");
+    expect(app.sent).toEqual([{ type: "take_control" }, { type: "replay_open", session: "mine" }]);
+    expect(text()).toContain("Opening the recording…");
+  });
+  it("is watched where another browser has opened the same", () => {
+    open();
+    app.hear(scene, resultFor("mine"), replayOf("mine"), state("replay", "mine", { in_control: false }), refused, replayOf("mine", 1));
+    expect(text()).toContain("Another browser is in control.");
+    expect(page.element.querySelector(".events")).not.toBeNull();
+    press("Watch");
+    expect(text()).not.toContain("Another browser is in control.");
+  });
+  it("says when the trainer has gone on to something else", () => {
+    open();
+    opened();
+    app.hear(state("running", "other", { in_control: false }), frame());
+    expect(text()).toContain("not open any more");
+    expect(page.element.querySelector(".events")).toBeNull();
+    app.sent.length = 0;
+    press("Open it again");
+    expect(app.sent).toEqual([{ type: "replay_open", session: "mine" }]);
+  });
+  it("ends nothing of another session when it is left", () => {
+    open();
+    app.hear(state("replay", "other", { in_control: false }));
+    app.sent.length = 0;
+    page.dispose();
+    expect(app.sent).toEqual([]);
+  });
+});
+
+describe("the moments", () => {
+  const open = () => { page = app.show(new MomentsPage(app.app, "mine")); };
+  it("of a session with lapses do not say that another has none", () => {
+    open();
+    app.hear(scene, resultFor("other", { lapses: [] }), replayOf("other"), state("replay", "other"), frame());
+    expect(text()).toContain("Opening the recording…");
+    app.hear(state("loading", "mine"), scene, resultFor("mine", { lapses }), state("replay", "mine"), replayOf("mine"));
+    expect(text()).toContain("lapse 1 of 1");
+    expect(app.sent.at(-1)).toEqual({ type: "seek", time: 20 });
+  });
+  it("say who is in control, and take it", () => {
+    open();
+    app.hear(scene, state("running", "other", { in_control: false }), refused);
+    app.sent.length = 0;
+    press("Take control");
+    expect(app.sent).toEqual([{ type: "take_control" }, { type: "replay_open", session: "mine" }]);
+  });
+  it("of a session that was not scored are said to be unknown", () => {
+    open();
+    app.hear(state("loading", "mine"), scene, state("replay", "mine"), replayOf("mine"));
+    expect(text()).toContain("not scored");
+  });
+});
