@@ -56,6 +56,15 @@ describe("without a task", () => {
   });
 });
 
+it("names the session that a new start of the trainer cut short, with the way to its replay", () => {
+  open();
+  app.hear(state("loading", "s 1"), scene, state("running", "s 1"), frame(), state("idle", null), state("idle", null, { clients: 2 }));
+  expect(text()).toContain("Session s 1 is stored");
+  expect(page.element.querySelector(".over a")!.getAttribute("href")).toBe("#/replay/s%201");
+  app.hear(state("loading", "s2"), scene, state("running", "s2"), resultFor("s2"), state("ended", "s2"), state("idle", null));
+  expect(text()).toContain("No task is running.");
+});
+
 describe("a page that is loaded again", () => {
   it("learns from the state after the scene that this is an exam", () => {
     open();

@@ -36,6 +36,7 @@ export class LivePage implements Page {
   private tissue: TissuePanel | null = null;
   private described: Scene | null = null; // the scene whose panels are shown
   private exam = false;
+  private ran: string | null = null; // the session of the task that runs; at rest: of one that had no end
   private ended: Result | null = null; // whose end is shown
   private lastPanels = 0;
   private refused = false; // the last start; its reason stays on the page
@@ -136,6 +137,7 @@ export class LivePage implements Page {
     this.element.dataset.state = session?.state ?? "idle";
     if (session?.state === "loading") this.showLoading();
     if (session?.state === "running") this.refused = false;
+    if (session && session.state !== "idle") this.ran = session.state === "running" ? session.session : null;
     if (!this.task) this.describe(null);
     else if (session?.state !== "loading" && (this.app.scene !== this.described || (session?.state === "running" && session.exam !== this.exam))) this.describe(this.app.scene);
     if (session?.state === "ended" && this.app.result !== this.ended) this.showEnd();
@@ -150,8 +152,13 @@ export class LivePage implements Page {
     if (this.app.session?.state === "replay" && this.app.replay) this.app.go(`#/replay/${encodeURIComponent(this.app.replay.session)}`);
   }
 
+  /// A task always ends before the trainer rests: one that did not was cut short with the program.
   private showNothing(): void {
-    this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", {}, "No task is running."), h("a", { class: "button", href: "#/" }, "Choose a task")));
+    const choose = h("a", { class: "button", href: "#/" }, "Choose a task");
+    const card = this.ran === null ? [h("p", {}, "No task is running."), choose] : [
+      h("p", { class: "big" }, "The task was cut short"), h("p", {}, `The trainer was started anew. Session ${this.ran} is stored up to then, without a score.`),
+      h("div", { class: "buttons" }, h("a", { class: "button primary", href: `#/replay/${encodeURIComponent(this.ran)}` }, "Replay"), choose)];
+    this.over.replaceChildren(h("div", { class: "card endcard" }, ...card));
   }
 
   private showLoading(): void {
