@@ -53,6 +53,15 @@ describe("a replay", () => {
     press("Open it again");
     expect(app.sent).toEqual([{ type: "replay_open", session: "mine" }]);
   });
+  it("lists, marks and jumps to what happened, not to what comes with every step", () => {
+    const event = (time: number, name: string) => ({ time, name, tool: -1, value: 0, unit: "s" }), mine = [...Array.from({ length: 20 }, (_, k) => event(k, k % 2 ? "overrun" : "target-error")), event(25, "needle-taken")];
+    open();
+    app.hear(state("loading", "mine"), scene, resultFor("mine", { events: mine }), state("replay", "mine"), replayOf("mine"), frame());
+    expect([...page.element.querySelectorAll(".eventbutton")].map((one) => one.children[1].textContent)).toEqual(["Needle taken"]);
+    expect(page.element.querySelectorAll(".marks span").length).toBe(1);
+    (page as ReplayPage).onkey(new KeyboardEvent("keydown", { key: "ArrowDown" }));
+    expect(app.sent.at(-1)).toEqual({ type: "seek", time: 25 });
+  });
   it("ends nothing of another session when it is left", () => {
     open();
     app.hear(state("replay", "other", { in_control: false }));

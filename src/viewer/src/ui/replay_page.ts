@@ -4,7 +4,7 @@ import type { ReplayState, Result, ServerMessage, TimedEvent } from "../messages
 import type { LineState } from "../net/connection";
 import { clear, h, setText } from "./dom";
 import { opticsBar } from "./field_view";
-import { clock, quantity, eventWords } from "./format";
+import { clock, listed, quantity, eventWords } from "./format";
 import { focusUses, microscopeKey, microscopeMouse } from "./microscope_keys";
 import { BrainPanel } from "./brain_panel";
 import { errorCard, isOf, kClosed, refusalCard, showsRecording } from "./own_recording";
@@ -79,7 +79,7 @@ export class ReplayPage implements Page {
       case "replay_state": this.showState(); break;
       case "result":
         if (this.blind) break;
-        this.events = message.events;
+        this.events = listed(message.events);
         this.result = message;
         this.describe();
         break;
