@@ -8,6 +8,7 @@ import { random } from "@viewer/scene/textures";
 import { BrainPanel, share } from "@viewer/ui/brain_panel";
 import { mapColour, pressureAt, pressureMapPanel } from "@viewer/ui/pressure_map";
 import { fullScale, rampColour, sectionValues } from "@viewer/ui/section_view";
+import style from "@viewer/style.css?raw";
 import { frameAt, kScene } from "./sample_frames.mjs";
 
 const shape = {
@@ -119,10 +120,22 @@ describe("brain panel", () => {
     expect(text).toContain("5 mm; C off the tissue: 10 mm");
     expect(text).toContain("40 mmHg");
   });
+  it("marks the limits of the bands where they stand on the bar, whose end is the alarm", () => {
+    const panel = new BrainPanel(scene, () => {});
+    panel.show(frame([0, 0, 0, 0]), scene);
+    const meter = panel.element.querySelector(".brainmeter")!;
+    expect([...meter.querySelectorAll<HTMLElement>(".tick")].map((one) => one.style.left)).toEqual(["25.0%", "50.0%", "75.0%"]);
+    expect([...meter.querySelectorAll<HTMLElement>(".scale span")].map((one) => one.textContent)).toEqual(["0", "10", "20", "30", "40"]);
+  });
   it("bars never run over", () => {
     expect(share(50, 40)).toBe(1);
     expect(share(-1, 40)).toBe(0);
     expect(share(1, 0)).toBe(0);
+  });
+  it("has a look with colour and pattern for every band above fine", () => {
+    const fills = ["yellow", "orange", "red"].map((band) => new RegExp(`\\[data-band=${band}\\] \\.fill \\{ background: (repeating[^;]*);`).exec(style)?.[1]);
+    expect(new Set(fills).size).toBe(3);
+    expect(fills.every(Boolean)).toBe(true);
   });
   it("switches the colours", () => {
     let drawn = 0;

@@ -14,26 +14,38 @@ export function share(value: number, full: number): number { return full > 0 ? M
 
 function css([r, g, b]: [number, number, number]): string { return `rgb(${[r, g, b].map((c) => Math.round(255 * c)).join(" ")})`; }
 
+/// A bar with a line at every limit of its bands and the limits' numbers below.
 class Bar {
   private readonly fill = h("div", { class: "fill" });
   private readonly value = h("output", {}, "");
-  private readonly marks = h("div", { class: "scale" });
+  private readonly track = h("div", { class: "track" }, this.fill);
+  private readonly numbers = h("div", { class: "scale", "aria-hidden": "true" });
+  private marked = "";
   readonly element: HTMLElement;
 
   constructor(private readonly label: string, private readonly unit: string) {
     this.element = h("div", { class: "meter brainmeter", role: "meter", "aria-label": label, "aria-valuemin": 0 },
-      h("span", { class: "label" }, label), this.value, h("div", { class: "track" }, this.fill), this.marks);
+      h("span", { class: "label" }, label), this.value, this.track, this.numbers);
   }
 
   show(value: number, band: string, bands: number[], full: number): void {
+    this.mark(bands, full);
     this.fill.style.transform = `scaleX(${share(value, full).toFixed(3)})`;
     setAttribute(this.element, "data-band", band);
     const text = `${value.toFixed(value < 100 ? 1 : 0)} ${this.unit} · ${kWords[band] ?? band}`;
     setText(this.value, text);
-    setText(this.marks, bands.map((b) => b.toFixed(0)).join(" · ") + ` ${this.unit}`);
     setAttribute(this.element, "aria-valuenow", value.toFixed(1));
     setAttribute(this.element, "aria-valuemax", full.toFixed(0));
     setAttribute(this.element, "aria-valuetext", `${this.label} ${text}`);
+  }
+
+  private mark(bands: number[], full: number): void {
+    const key = [...bands, full].join();
+    if (key === this.marked) return;
+    this.marked = key;
+    const at = (element: HTMLElement, value: number) => { element.style.left = `${(100 * share(value, full)).toFixed(1)}%`; return element; };
+    this.track.replaceChildren(this.fill, ...bands.map((b) => at(h("div", { class: "tick" }), b)));
+    this.numbers.replaceChildren(h("span", {}, "0"), ...bands.map((b) => at(h("span", {}, b.toFixed(0)), b)), at(h("span", { class: "end" }, full.toFixed(0)), full));
   }
 }
 
