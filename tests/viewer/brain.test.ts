@@ -1,3 +1,5 @@
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import * as THREE from "three";
 import { describe, expect, it } from "vitest";
 import type { Frame, Scene } from "@viewer/messages";
@@ -8,7 +10,6 @@ import { random } from "@viewer/scene/textures";
 import { BrainPanel, share } from "@viewer/ui/brain_panel";
 import { mapColour, pressureAt, pressureMapPanel } from "@viewer/ui/pressure_map";
 import { fullScale, rampColour, sectionValues } from "@viewer/ui/section_view";
-import style from "@viewer/style.css?raw";
 import { frameAt, kScene } from "./sample_frames.mjs";
 
 const shape = {
@@ -133,6 +134,7 @@ describe("brain panel", () => {
     expect(share(1, 0)).toBe(0);
   });
   it("has a look with colour and pattern for every band above fine", () => {
+    const style = readFileSync(join(__dirname, "../../src/viewer/src/style.css"), "utf8");
     const fills = ["yellow", "orange", "red"].map((band) => new RegExp(`\\[data-band=${band}\\] \\.fill \\{ background: (repeating[^;]*);`).exec(style)?.[1]);
     expect(new Set(fills).size).toBe(3);
     expect(fills.every(Boolean)).toBe(true);
