@@ -81,6 +81,17 @@ describe("the moments", () => {
     expect(text()).toContain("lapse 1 of 1");
     expect(app.sent.at(-1)).toEqual({ type: "seek", time: 20 });
   });
+  it("tell how far the recording is computed on the way to the next", () => {
+    open();
+    const bar = () => page.element.querySelector("progress")!;
+    expect(bar().hidden).toBe(true);
+    app.hear(state("loading", "mine"), scene, resultFor("mine", { lapses }), state("replay", "mine"), { ...replayOf("mine"), ready: 5 });
+    expect(bar().hidden).toBe(false);
+    expect(bar().value).toBeCloseTo(5 / 20);
+    expect(text()).toContain("now at 0:05.0 of 0:20.0");
+    app.hear({ ...replayOf("mine", 20), ready: 21 });
+    expect(bar().hidden).toBe(true);
+  });
   it("say who is in control, and take it", () => {
     open();
     app.hear(scene, state("running", "other", { in_control: false }), refused);

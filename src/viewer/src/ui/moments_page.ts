@@ -3,7 +3,7 @@
 import type { App, Page } from "../app";
 import type { Lapse, Result, ServerMessage } from "../messages";
 import { h, setText } from "./dom";
-import { words } from "./format";
+import { clock, words } from "./format";
 import { errorCard, isOf, kClosed, refusalCard, showsRecording } from "./own_recording";
 import { lapseValue, replayAt } from "./stitch_panel";
 
@@ -16,6 +16,8 @@ export class MomentsPage implements Page {
   readonly element = h("div", { class: "page moments foreign" });
   private readonly view;
   private readonly said = h("p", { role: "status", "aria-live": "polite" }, kOpening);
+  private readonly computed = h("progress", { max: 1, value: 0, hidden: true, "aria-label": "Share that is computed" });
+  private readonly computedTo = h("p", { class: "quiet", "aria-hidden": "true" }); // changes ten times a second: not to be read out
   private readonly refusal = h("div", {});
   private readonly gallery = h("div", { class: "gallery" });
   private result: Result | null = null;
@@ -25,7 +27,7 @@ export class MomentsPage implements Page {
 
   constructor(private readonly app: App, private readonly id: string) {
     this.view = app.microscope();
-    this.element.append(h("h1", {}, "Moments of the lapses"), this.said, h("div", { class: "buttons" }, h("a", { class: "button", href: `#/result/${encodeURIComponent(id)}` }, "Result")),
+    this.element.append(h("h1", {}, "Moments of the lapses"), this.said, this.computed, this.computedTo, h("div", { class: "buttons" }, h("a", { class: "button", href: `#/result/${encodeURIComponent(id)}` }, "Result")),
       this.refusal, h("div", { class: "momentfield" }, this.view.element), this.gallery);
     this.view.start();
     if (app.online && app.hello) this.open();
@@ -53,26 +55,41 @@ export class MomentsPage implements Page {
     this.result = null;
     this.refusal.replaceChildren();
     setText(this.said, kOpening);
+    this.showReady();
     this.open();
   }
 
   private showWhose(): void {
     const mine = showsRecording(this.app, this.id);
     this.element.classList.toggle("foreign", !mine || this.app.session?.state !== "replay"); // the scene comes before that state
-    if (mine || !this.result) return;
+    if (!mine && this.result) this.stay(refusalCard(kClosed, "Open it again", () => this.again()));
+  }
+
+  /// Goes no further, and says why.
+  private stay(card: HTMLElement): void {
     this.result = null;
     setText(this.said, "");
-    this.refusal.replaceChildren(refusalCard(kClosed, "Open it again", () => this.again()));
+    this.showReady();
+    this.refusal.replaceChildren(card);
   }
 
   private showRefusal(message: { code: string; what: string }): void {
-    setText(this.said, "");
-    this.refusal.replaceChildren(errorCard(this.app, message, () => this.again()));
+    if (this.result && message.code !== "not-in-control") return; // about something else
+    this.stay(errorCard(this.app, message, () => this.again()));
   }
 
   private goOn(): void {
     if (!this.result) setText(this.said, "This session was not scored: no lapses are known of it.");
     else if (this.asked < this.at) this.aim();
+    this.showReady();
+  }
+
+  /// The recording is stepped anew up to the moment that is waited for.
+  private showReady(): void {
+    const { lapse } = this, ready = this.app.replay?.ready ?? 0, time = Math.min(lapse?.time ?? 0, this.app.replay?.duration ?? 0);
+    this.computed.hidden = !this.result || !lapse || ready >= time;
+    if (!this.computed.hidden) this.computed.value = ready / time;
+    setText(this.computedTo, this.computed.hidden ? "" : `now at ${clock(ready)} of ${clock(time)}`);
   }
 
   private open(): void { if (!this.opened) this.opened = this.app.send({ type: "replay_open", session: this.id }); }
@@ -101,5 +118,6 @@ export class MomentsPage implements Page {
       h("figcaption", {}, h("strong", {}, text), " ", h("a", { href: replayAt(this.id, lapse.time, lapse.stitch) }, `replay from ${(lapse.time ?? 0).toFixed(1)} s`))));
     this.at += 1;
     this.aim();
+    this.showReady();
   }
 }
