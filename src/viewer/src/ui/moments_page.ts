@@ -79,6 +79,7 @@ export class MomentsPage implements Page {
   }
 
   private goOn(): void {
+    if (this.refusal.hasChildNodes()) return;
     if (!this.result) setText(this.said, "This session was not scored: no lapses are known of it.");
     else if (this.asked < this.at) this.aim();
     this.showReady();
