@@ -124,9 +124,10 @@ describe("brain panel", () => {
   it("marks the limits of the bands where they stand on the bar, whose end is the alarm", () => {
     const panel = new BrainPanel(scene, () => {});
     panel.show(frame([0, 0, 0, 0]), scene);
-    const meter = panel.element.querySelector(".brainmeter")!;
+    const [meter, dose] = [...panel.element.querySelectorAll(".brainmeter")];
     expect([...meter.querySelectorAll<HTMLElement>(".tick")].map((one) => one.style.left)).toEqual(["25.0%", "50.0%", "75.0%"]);
     expect([...meter.querySelectorAll<HTMLElement>(".scale span")].map((one) => one.textContent)).toEqual(["0", "10", "20", "30", "40"]);
+    expect([...dose.querySelectorAll(".scale span")].map((one) => one.textContent)).toEqual(["0", "75", "150", "225"]); // no room for its end
   });
   it("bars never run over", () => {
     expect(share(50, 40)).toBe(1);

@@ -45,7 +45,8 @@ class Bar {
     this.marked = key;
     const at = (element: HTMLElement, value: number) => { element.style.left = `${(100 * share(value, full)).toFixed(1)}%`; return element; };
     this.track.replaceChildren(this.fill, ...bands.map((b) => at(h("div", { class: "tick" }), b)));
-    this.numbers.replaceChildren(h("span", {}, "0"), ...bands.map((b) => at(h("span", {}, b.toFixed(0)), b)), at(h("span", { class: "end" }, full.toFixed(0)), full));
+    const room = share(bands[bands.length - 1], full) < 0.8; // for the end's number beside the last limit's
+    this.numbers.replaceChildren(h("span", {}, "0"), ...bands.map((b) => at(h("span", {}, b.toFixed(0)), b)), ...(room ? [at(h("span", { class: "end" }, full.toFixed(0)), full)] : []));
   }
 }
 
