@@ -43,6 +43,15 @@ describe("a replay", () => {
     press("Watch");
     expect(text()).not.toContain("Another browser is in control.");
   });
+  it("is watched from the first moment by a page that comes to it later", () => {
+    app.hear(state("replay", "mine", { in_control: false }), scene, resultFor("mine"), replayOf("mine", 12), frame(12));
+    open();
+    app.hear(refused);
+    expect(page.element.querySelector(".events li")).not.toBeNull();
+    expect(text()).toContain("0:12.0 / 0:30.0");
+    press("Watch");
+    expect(page.element.classList.contains("foreign")).toBe(false);
+  });
   it("says when the trainer has gone on to something else", () => {
     open();
     opened();
@@ -52,6 +61,8 @@ describe("a replay", () => {
     app.sent.length = 0;
     press("Open it again");
     expect(app.sent).toEqual([{ type: "replay_open", session: "mine" }]);
+    opened();
+    expect(page.element.querySelector(".over")!.textContent).toBe("");
   });
   it("lists, marks and jumps to what happened, not to what comes with every step", () => {
     const event = (time: number, name: string) => ({ time, name, tool: -1, value: 0, unit: "s" }), mine = [...Array.from({ length: 20 }, (_, k) => event(k, k % 2 ? "overrun" : "target-error")), event(25, "needle-taken")];

@@ -64,6 +64,7 @@ export class ReplayPage implements Page {
     const transport = h("div", { class: "transport", role: "group", "aria-label": "Replay" }, this.play, h("div", { class: "timeline" }, this.ready, this.marks, this.scrub), this.clock);
     this.element.append(this.left, h("div", { class: "middle" }, this.view.element, this.warnings.element, this.over), this.right, transport, opticsBar(this.view));
     this.showOpening();
+    this.join();
     if (app.online && app.hello) this.open();
     this.view.start();
   }
@@ -79,8 +80,7 @@ export class ReplayPage implements Page {
       case "replay_state": this.showState(); break;
       case "result":
         if (this.blind) break;
-        this.events = listed(message.events);
-        this.result = message;
+        this.keep(message);
         this.describe();
         break;
       case "frame": this.showFrame(); break;
@@ -122,6 +122,20 @@ export class ReplayPage implements Page {
   private open(): void {
     if (this.opened) return;
     this.opened = this.app.send({ type: "replay_open", session: this.id });
+  }
+
+  private keep(result: Result): void {
+    this.events = listed(result.events);
+    this.result = result;
+  }
+
+  /// Another browser has opened it, and its scene and result have come already: nobody sends them again.
+  private join(): void {
+    if (this.app.session?.in_control || !showsRecording(this.app, this.id)) return;
+    if (this.app.result?.session === this.id && !this.blind) this.keep(this.app.result);
+    this.showWhose();
+    this.showState();
+    this.showFrame();
   }
 
   private showOpening(): void { this.over.replaceChildren(h("p", { class: "loading", role: "status" }, "Opening the recording…")); }
@@ -194,7 +208,8 @@ export class ReplayPage implements Page {
     const { scene } = this.app;
     if (!scene || !showsRecording(this.app, this.id)) return;
     this.element.classList.remove("foreign");
-    if (!this.refused) clear(this.over);
+    this.refused = false;
+    clear(this.over);
     clear(this.left);
     clear(this.right);
     this.steps = new StepPanel(scene.title);
