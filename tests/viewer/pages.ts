@@ -24,14 +24,14 @@ export const frame = (time = 1) => frameAt(time, 1, 30) as unknown as Extract<Se
 
 /// Keeps what messages say as the app does, and hands them to the page.
 export function fakeApp() {
-  const sent: Record<string, unknown>[] = [], gone: string[] = [], view = fakeView();
+  const sent: Record<string, unknown>[] = [], gone: string[] = [], dropped: string[] = [], view = fakeView();
   let page: { onmessage?(message: ServerMessage): void } | null = null;
   const app = {
     online: true, hello: {} as unknown, session: null as SessionState | null, scene: null as unknown, frame: null as unknown, result: null as unknown, replay: null as unknown,
-    sound: { play: () => {} }, microscope: () => view, go: (hash: string) => { gone.push(hash); }, send: (message: Record<string, unknown>) => { sent.push(message); return true; },
+    sound: { play: () => {} }, dropNotice: (code: string) => { dropped.push(code); }, microscope: () => view, go: (hash: string) => { gone.push(hash); }, send: (message: Record<string, unknown>) => { sent.push(message); return true; },
   };
   return {
-    app: app as unknown as App, sent, gone, view,
+    app: app as unknown as App, sent, gone, dropped, view,
     show<P extends { element: HTMLElement; onmessage?(message: ServerMessage): void }>(made: P): P { page = made; document.body.replaceChildren(made.element); return made; },
     hear(...messages: ServerMessage[]): void {
       for (const message of messages) {

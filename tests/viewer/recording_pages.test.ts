@@ -34,6 +34,7 @@ describe("a replay", () => {
     press("Take control");
     expect(app.sent).toEqual([{ type: "take_control" }, { type: "replay_open", session: "mine" }]);
     expect(text()).toContain("Opening the recording…");
+    expect(app.dropped, "the notice that somebody else is in control").toEqual(["not-in-control"]);
   });
   it("is watched where another browser has opened the same", () => {
     open();

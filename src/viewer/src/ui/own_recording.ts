@@ -29,5 +29,5 @@ export function errorCard(app: App, message: { code: string; what: string }, ope
   if (message.code !== "not-in-control") return refusalCard(message.what, "Try again", open, ...more);
   const running = app.session?.state === "running" || app.session?.state === "loading";
   const text = running ? `${message.what} Its task ends if you take control.` : message.what;
-  return refusalCard(text, "Take control", () => { app.send({ type: "take_control" }); open(); }, ...more);
+  return refusalCard(text, "Take control", () => { app.send({ type: "take_control" }); app.dropNotice(message.code); open(); }, ...more);
 }
