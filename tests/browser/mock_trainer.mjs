@@ -14,7 +14,7 @@ const kTypes = { ".html": "text/html", ".js": "text/javascript", ".css": "text/c
 
 /// `duration` [s] of the make-believe task.
 export function startMock({ port = 0, duration = 8 } = {}) {
-  const state = { running: false, input: null, time: 0, replay: null, playing: false, pointers: [], acks: 0, hold: false, sockets: new Set(), starts: [] };
+  const state = { running: false, ended: false, input: null, time: 0, replay: null, playing: false, pointers: [], acks: 0, hold: false, sockets: new Set(), starts: [] };
   const kInfo = { id: "s1", task: "knot-square", title: "Square knot", input: "demo", code: "A17", started: "2026-11-21T08:30:00Z", seconds: duration, finished: true, passed: true, total: 89 };
   const http = createServer((request, response) => {
     const path = new URL(request.url, "http://x").pathname;
@@ -42,9 +42,9 @@ export function startMock({ port = 0, duration = 8 } = {}) {
       const message = JSON.parse(String(data));
       if (message.type === "ack") { ++me.credit; ++state.acks; }
       else if (message.type === "pointer") state.pointers.push(message);
-      else if (message.type === "start") { state.starts.push(message); Object.assign(state, { running: true, input: message.input, time: 0, replay: null }); all(sessionState(state)); all(kScene); }
+      else if (message.type === "start") { state.starts.push(message); Object.assign(state, { running: true, ended: false, input: message.input, time: 0, replay: null }); all(sessionState(state)); all(kScene); }
       else if (message.type === "stop") { if (state.replay) state.replay = null; else finish(false); all(sessionState(state)); }
-      else if (message.type === "replay_open") { Object.assign(state, { replay: message.session, running: false, time: 0, playing: false }); all(sessionState(state)); say(kScene); say(resultOf(message.session, duration)); sayReplay(); force = true; }
+      else if (message.type === "replay_open") { Object.assign(state, { replay: message.session, running: false, ended: false, time: 0, playing: false }); all(sessionState(state)); say(kScene); say(resultOf(message.session, duration)); sayReplay(); force = true; }
       else if (message.type === "seek") { state.time = message.time; sayReplay(); force = true; }
       else if (message.type === "play" || message.type === "pause") { state.playing = message.type === "play"; sayReplay(); }
     });
@@ -52,7 +52,7 @@ export function startMock({ port = 0, duration = 8 } = {}) {
   let force = false;
   const all = (message) => { for (const { socket } of state.sockets) socket.send(JSON.stringify(message)); };
   const sayReplay = () => all({ type: "replay_state", session: state.replay, time: state.time, duration, ready: duration, playing: state.playing });
-  const finish = (finished) => { state.running = false; all({ ...resultOf("s1", duration), finished }); all(sessionState(state)); };
+  const finish = (finished) => { Object.assign(state, { running: false, ended: true }); all({ ...resultOf("s1", duration), finished }); all(sessionState(state)); };
   const timer = setInterval(() => {
     const moving = state.running || (state.replay && state.playing);
     if (moving) state.time += 1 / 60;
@@ -74,9 +74,9 @@ export function startMock({ port = 0, duration = 8 } = {}) {
 }
 
 function sessionState(state) {
-  const running = state.running ? "running" : state.replay ? "replay" : "idle";
+  const running = state.running ? "running" : state.replay ? "replay" : state.ended ? "ended" : "idle";
   return { type: "session_state", state: running, task: state.running ? "knot-square" : "", input: state.running ? state.input : null, controller: 1, in_control: true, clients: state.sockets.size,
-    recording: state.running, session: state.running ? "s1" : null, warning: "", knot_test: null };
+    recording: state.running, exam: false, session: state.running || state.ended ? "s1" : state.replay, warning: "", knot_test: null };
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {

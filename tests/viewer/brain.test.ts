@@ -1,3 +1,5 @@
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import * as THREE from "three";
 import { describe, expect, it } from "vitest";
 import type { Frame, Scene } from "@viewer/messages";
@@ -119,10 +121,24 @@ describe("brain panel", () => {
     expect(text).toContain("5 mm; C off the tissue: 10 mm");
     expect(text).toContain("40 mmHg");
   });
+  it("marks the limits of the bands where they stand on the bar, whose end is the alarm", () => {
+    const panel = new BrainPanel(scene, () => {});
+    panel.show(frame([0, 0, 0, 0]), scene);
+    const [meter, dose] = [...panel.element.querySelectorAll(".brainmeter")];
+    expect([...meter.querySelectorAll<HTMLElement>(".tick")].map((one) => one.style.left)).toEqual(["25.0%", "50.0%", "75.0%"]);
+    expect([...meter.querySelectorAll<HTMLElement>(".scale span")].map((one) => one.textContent)).toEqual(["0", "10", "20", "30", "40"]);
+    expect([...dose.querySelectorAll(".scale span")].map((one) => one.textContent)).toEqual(["0", "75", "150", "225"]); // no room for its end
+  });
   it("bars never run over", () => {
     expect(share(50, 40)).toBe(1);
     expect(share(-1, 40)).toBe(0);
     expect(share(1, 0)).toBe(0);
+  });
+  it("has a look with colour and pattern for every band above fine", () => {
+    const style = readFileSync(join(__dirname, "../../src/viewer/src/style.css"), "utf8");
+    const fills = ["yellow", "orange", "red"].map((band) => new RegExp(`\\[data-band=${band}\\] \\.fill \\{ background: (repeating[^;]*);`).exec(style)?.[1]);
+    expect(new Set(fills).size).toBe(3);
+    expect(fills.every(Boolean)).toBe(true);
   });
   it("switches the colours", () => {
     let drawn = 0;
@@ -167,6 +183,37 @@ describe("a blind step", () => {
     panel.show(seen, scene);
     expect(meters.some((meter) => meter.hidden)).toBe(false);
     expect(pressureView.blind).toBe(false);
+  });
+});
+
+describe("an exam", () => {
+  const colours = (seen: Frame): number[] => {
+    const brain = new Brain(shape, true);
+    brain.update(seen);
+    const colour = (brain.group.children[0] as THREE.Mesh<THREE.BufferGeometry>).geometry.getAttribute("color");
+    return [0, 1, 2, 3].map((i) => colour.getW(i));
+  };
+  const visible = (panel: BrainPanel, what: string) => [...panel.element.querySelectorAll<HTMLElement>(what)].filter((one) => !one.closest("[hidden]"));
+
+  it("hides pressure, colours, legend, cross-section and their buttons from the first frame on", () => {
+    const panel = new BrainPanel(scene, () => {}, true), seen = frame([40, 40, 40, 40]);
+    for (const when of ["before", "after"]) {
+      expect(visible(panel, "button, .brainmeter, .brainlegend, .section"), when).toEqual([]);
+      expect(colours(seen), when).toEqual([0, 0, 0, 0]);
+      panel.show(seen, scene);
+    }
+    expect(visible(panel, "output, p").map((one) => one.textContent).join()).not.toMatch(/24\.0|0\.42 N/);
+    expect(panel.element.textContent).toContain("Exam: pressure and colours are not shown.");
+  });
+  it("leaves nothing hidden in the next task, nor shown in a task after it", () => {
+    const seen = frame([40, 40, 40, 40]);
+    new BrainPanel(scene, () => {}, true);
+    const next = new BrainPanel(scene, () => {});
+    expect(colours(seen)[0]).toBeGreaterThan(0.9);
+    expect(visible(next, "button").length).toBeGreaterThan(3);
+    const again = new BrainPanel(scene, () => {}, true);
+    expect(visible(again, "button")).toEqual([]);
+    pressureView.blind = false;
   });
 });
 

@@ -1,6 +1,8 @@
-import { describe, expect, it, test } from "vitest";
-import type { Blood, TissueShape } from "../../src/viewer/src/messages";
-import { needleGeometry } from "../../src/viewer/src/scene/needle";
+import * as THREE from "three";
+import { describe, expect, it, test, vi } from "vitest";
+import type { Blood, TissueShape, TissueState } from "../../src/viewer/src/messages";
+import type { Materials } from "../../src/viewer/src/scene/materials";
+import { needleGeometry, Tissue } from "../../src/viewer/src/scene/needle";
 import { fullness, hanging, radiusOf, sharesAlong, Shreds } from "../../src/viewer/src/scene/vessel";
 
 test("the drawn wire is the needle of the scene: middle on +x, point on the side of +y, thin at the point", () => {
@@ -18,6 +20,23 @@ test("the drawn wire is the needle of the scene: middle on +x, point on the side
   expect(middle.thick).toBeCloseTo(0.0375, 3);
   expect(point.thick).toBeLessThan(0.01);
   expect(Math.max(...triangles)).toBeLessThan(vertices.length / 3);
+});
+
+test("the line over marked ways has as many points as there are holes, more or fewer than before", () => {
+  const shape = { name: "card", kind: "card", thickness: 1e-4, radius: 0, clamp_reach: 0, second: 0, triangles: [0, 1, 2], rest: [0, 0, 0, 1e-3, 0, 0, 0, 1e-3, 0] } as unknown as TissueShape;
+  const tissue = new Tissue(shape, true, {} as Materials, 0), line = tissue.group.children.find((one) => one instanceof THREE.Line) as THREE.Line;
+  const pass = (x: number) => ({ entry: [x, 0, 0], exit: [x, 1e-3, 0] });
+  tissue.update({ positions: shape.rest, passes: [pass(0), pass(1e-3), pass(2e-3)] } as unknown as TissueState, 0);
+  const warn = vi.spyOn(console, "warn").mockImplementation(() => {}), points = () => line.geometry.getAttribute("position");
+  for (const [marked, count] of [[[0], 2], [[0, 1, 2], 6], [[2], 2]] as [number[], number][]) {
+    tissue.mark(marked);
+    expect(points().count).toBe(count);
+    expect(points().getX(count - 1)).toBeCloseTo(marked[marked.length - 1], 6);
+  }
+  tissue.mark([]);
+  expect(line.visible).toBe(false);
+  expect(warn).not.toHaveBeenCalled();
+  warn.mockRestore();
 });
 
 describe("blood at a gap", () => {

@@ -1,4 +1,5 @@
-import { blurDiameter, eyeAt, fieldDiameter, magnificationFor, magnificationShowing, kWorkingDistance, openingAngle, scaleBar, zoomed, type OpticsState } from "@viewer/scene/optics";
+import type { Frame, Scene } from "@viewer/messages";
+import { blurDiameter, eyeAt, fieldDiameter, magnificationFor, magnificationAtFirst, magnificationShowing, kWorkingDistance, openingAngle, scaleBar, zoomed, type OpticsState } from "@viewer/scene/optics";
 
 const optics = (change: Partial<OpticsState> = {}): OpticsState => ({ magnification: 10, focus: 3, centre: [1, 2], tilt: 0.2, eyeDistance: 22, ...change });
 
@@ -61,5 +62,17 @@ describe("the start", () => {
     expect(fieldDiameter(start) / 2).toBeLessThan(15);
     expect(magnificationShowing(28, 0.5, 1.6)).toBe(28); // already there
     expect(magnificationShowing(28, 90, 1.6)).toBe(5); // no microscope shows it
+  });
+
+  it("has the instruments in the picture that a hand must find, and keeps what shows them already", () => {
+    const scene = { tools: [{ kind: "forceps" }, { kind: "needle-holder" }, { kind: "scissors" }] } as unknown as Scene;
+    const at = (...tips: number[]) => ({ tools: tips.map((x) => ({ pose: { position: [x, 0, 8e-3] } })) }) as unknown as Frame;
+    const start = magnificationAtFirst(8, scene, at(-12e-3, 12e-3, 18e-3), [0, 0]); // knot-square by mouse
+    expect(fieldDiameter(start) / 2).toBeGreaterThan(15);
+    expect(fieldDiameter(start) / 2).toBeLessThan(18); // scissors may stay outside
+    expect(magnificationAtFirst(8, scene, at(-4e-3, 4e-3, 18e-3), [0, 0])).toBe(8);
+    expect(magnificationAtFirst(5, { ...scene, brain: {} } as unknown as Scene, at(60e-3), [0, 0])).toBe(5);
+    const needle = { ...scene, tissue: {}, needle: { bend_radius: 1.6e-3 } } as unknown as Scene, lies = { ...at(-4e-3, 4e-3), needle: { pose: { position: [0, 11.4e-3, 0] } } } as unknown as Frame;
+    expect(magnificationAtFirst(30.6, needle, lies, [0, 0])).toBeCloseTo(magnificationShowing(30.6, 11.4, 1.6), 9);
   });
 });

@@ -13,11 +13,11 @@ const view = () => ({
 
 describe("keys in a replay", () => {
   let page: ReplayPage, sent: { type: string; time?: number }[];
-  const app = { microscope: view, online: false, hello: null, session: null, replay: { time: 10, duration: 30, ready: 30, playing: false }, send: (message: { type: string }) => { sent.push(message); return true; } };
+  const app = { microscope: view, online: false, hello: null, session: null, replay: { session: "s1", time: 10, duration: 30, ready: 30, playing: false }, send: (message: { type: string }) => { sent.push(message); return true; } };
   beforeEach(() => {
     sent = [];
     zooms.length = 0;
-    app.replay = { time: 10, duration: 30, ready: 30, playing: false };
+    app.replay = { session: "s1", time: 10, duration: 30, ready: 30, playing: false };
     page = new ReplayPage(app as unknown as App, "s1");
     document.body.replaceChildren(page.element);
   });
@@ -58,8 +58,8 @@ describe("keys in a replay", () => {
   });
 
   it("to a moment that is not computed yet show how far it is, and that it comes by itself", () => {
-    app.replay = { time: 10, duration: 30, ready: 12, playing: false };
-    const state = (): void => page.onmessage({ type: "replay_state", session: "s1", ...app.replay });
+    app.replay = { session: "s1", time: 10, duration: 30, ready: 12, playing: false };
+    const state = (): void => page.onmessage({ type: "replay_state", ...app.replay });
     const note = (): string => page.element.querySelector(".over")!.textContent!;
     state();
     expect(note()).toBe("");

@@ -2,7 +2,7 @@
 import * as THREE from "three";
 import type { Frame, Scene } from "../messages";
 import { FinishPass } from "./finish_pass";
-import { blurDiameter, eyeAt, fieldDiameter, magnificationFor, magnificationShowing, kMagnificationBrain, kMagnificationStart, kTilt, kTiltBrain, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
+import { blurDiameter, eyeAt, fieldDiameter, magnificationFor, magnificationAtFirst, kMagnificationBrain, kMagnificationStart, kTilt, kTiltBrain, kWorkingDistance, openingAngle, type OpticsState } from "./optics";
 import { isSoftwareRenderer, QualityChooser } from "./quality";
 import { Stage } from "./stage";
 
@@ -16,7 +16,7 @@ export class Microscope {
   readonly quality: QualityChooser;
   readonly rendererName: string;
   private start = kMagnificationStart;
-  private needleReach = 0; // [mm], of a needle that has not been seen yet; 0: none
+  private unseen: Scene | null = null; // of which no frame has been seen yet
   readonly optics: OpticsState = { magnification: kMagnificationStart, focus: 0, centre: [0, 0], tilt: kTilt, eyeDistance: 22 };
   stereo: StereoMode = "mono";
   lastFrameTime = 0; // [ms], from one drawn frame to the next
@@ -49,15 +49,14 @@ export class Microscope {
     this.optics.tilt = scene.brain && scene.brain.bone === null ? kTiltBrain : kTilt; // below a lobe one looks along the bone
     const start = scene.brain ? kMagnificationBrain : scene.tissue ? magnificationFor(...extent(scene.tissue.rest)) : kMagnificationStart;
     if (start !== this.start) this.optics.magnification = this.start = start;
-    this.needleReach = scene.tissue && scene.needle ? 1000 * scene.needle.bend_radius : 0;
+    this.unseen = scene;
   }
 
-  /// The first frame says where the needle is; it must be in the picture to be taken.
-  private showNeedle(frame: Frame): void {
-    if (!this.needleReach || !frame.needle) return;
-    const [x, y] = frame.needle.pose.position, [cx, cy] = this.optics.centre;
-    const start = magnificationShowing(this.start, Math.hypot(1000 * x - cx, 1000 * y - cy), this.needleReach);
-    this.needleReach = 0;
+  /// The first frame says where needle and instruments are; they must be in the picture to be taken and moved.
+  private showFirst(frame: Frame): void {
+    if (!this.unseen) return;
+    const start = magnificationAtFirst(this.start, this.unseen, frame, this.optics.centre);
+    this.unseen = null;
     if (this.optics.magnification === this.start) this.optics.magnification = start;
     this.start = start;
   }
@@ -66,7 +65,7 @@ export class Microscope {
   get startMagnification(): number { return this.start; }
 
   update(frame: Frame): void {
-    this.showNeedle(frame);
+    this.showFirst(frame);
     this.stage.paint(this.quality.current.painted);
     this.stage.update(frame, kThinnest * this.millimetresPerPixel);
   }

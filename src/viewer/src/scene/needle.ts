@@ -108,7 +108,12 @@ export class Tissue {
     }
     this.rings.forEach((mesh, k) => { mesh.visible = k < at.length; if (mesh.visible) mesh.position.copy(at[k]); });
     this.bridge.visible = at.length > 1;
-    if (at.length > 1) this.bridge.geometry.setFromPoints(at);
+    if (at.length < 2) return;
+    if (this.bridge.geometry.getAttribute("position")?.count !== at.length) { // a geometry keeps the size it was made with
+      this.bridge.geometry.dispose();
+      this.bridge.geometry = new THREE.BufferGeometry();
+    }
+    this.bridge.geometry.setFromPoints(at);
   }
 
   /// Colours by a number for each vertex, or the tissue's own colour.

@@ -1,5 +1,6 @@
 // The microscope as geometry: where the two eyes are, how wide the field is and what is in focus. Millimetres, the scene's
 // own axes (z up). No three.js here, so that it can be tested without a screen.
+import type { Frame, Scene } from "../messages";
 
 export interface OpticsState {
   magnification: number; // 5 ... 40
@@ -11,7 +12,7 @@ export interface OpticsState {
 
 export const kMagnificationMin = 5;
 export const kMagnificationMax = 40;
-export const kMagnificationStart = 8; // both hands at rest are in the field
+export const kMagnificationStart = 8; // less where hands or needle would be outside
 export const kMagnificationBrain = 5; // blades, lips and the way between them
 
 /// What is stitched fills a third of the picture at the start, taken as the root of its length times its width [mm].
@@ -23,6 +24,17 @@ export function magnificationFor(length: number, width: number): number {
 export function magnificationShowing(wanted: number, distance: number, reach: number): number {
   return clampMagnification(Math.min(wanted, (0.9 * kFieldNumber) / (2 * Math.max(1e-6, distance + reach))));
 }
+const kTipReach = 3; // [mm], of an instrument at rest to be seen besides its tip
+
+/// The greatest magnification up to `wanted` with all in the picture that the first frame says must be taken and moved: needle and instruments. Scissors are brought in later.
+export function magnificationAtFirst(wanted: number, scene: Scene, frame: Frame, centre: readonly number[]): number {
+  if (scene.brain) return wanted; // blades are as wide as the field
+  const distance = ([x, y]: readonly number[]) => Math.hypot(1000 * x - centre[0], 1000 * y - centre[1]);
+  const tips = frame.tools.filter((_, k) => scene.tools[k]?.kind !== "scissors").map((tool) => magnificationShowing(wanted, distance(tool.pose.position), kTipReach));
+  const needle = scene.tissue && scene.needle && frame.needle ? [magnificationShowing(wanted, distance(frame.needle.pose.position), 1000 * scene.needle.bend_radius)] : [];
+  return Math.min(wanted, ...tips, ...needle);
+}
+
 export const kTilt = 0.21; // [rad], at which instruments are seen from the operator's side
 export const kTiltBrain = 0.1; // [rad], into a fissure: nearly from above, as its target is measured, but no blade quite on edge
 export const kWorkingDistance = 200; // [mm], objective to focal plane

@@ -14,26 +14,39 @@ export function share(value: number, full: number): number { return full > 0 ? M
 
 function css([r, g, b]: [number, number, number]): string { return `rgb(${[r, g, b].map((c) => Math.round(255 * c)).join(" ")})`; }
 
+/// A bar with a line at every limit of its bands and the limits' numbers below.
 class Bar {
   private readonly fill = h("div", { class: "fill" });
   private readonly value = h("output", {}, "");
-  private readonly marks = h("div", { class: "scale" });
+  private readonly track = h("div", { class: "track" }, this.fill);
+  private readonly numbers = h("div", { class: "scale", "aria-hidden": "true" });
+  private marked = "";
   readonly element: HTMLElement;
 
   constructor(private readonly label: string, private readonly unit: string) {
     this.element = h("div", { class: "meter brainmeter", role: "meter", "aria-label": label, "aria-valuemin": 0 },
-      h("span", { class: "label" }, label), this.value, h("div", { class: "track" }, this.fill), this.marks);
+      h("span", { class: "label" }, label), this.value, this.track, this.numbers);
   }
 
   show(value: number, band: string, bands: number[], full: number): void {
+    this.mark(bands, full);
     this.fill.style.transform = `scaleX(${share(value, full).toFixed(3)})`;
     setAttribute(this.element, "data-band", band);
     const text = `${value.toFixed(value < 100 ? 1 : 0)} ${this.unit} · ${kWords[band] ?? band}`;
     setText(this.value, text);
-    setText(this.marks, bands.map((b) => b.toFixed(0)).join(" · ") + ` ${this.unit}`);
     setAttribute(this.element, "aria-valuenow", value.toFixed(1));
     setAttribute(this.element, "aria-valuemax", full.toFixed(0));
     setAttribute(this.element, "aria-valuetext", `${this.label} ${text}`);
+  }
+
+  private mark(bands: number[], full: number): void {
+    const key = [...bands, full].join();
+    if (key === this.marked) return;
+    this.marked = key;
+    const at = (element: HTMLElement, value: number) => { element.style.left = `${(100 * share(value, full)).toFixed(1)}%`; return element; };
+    this.track.replaceChildren(this.fill, ...bands.map((b) => at(h("div", { class: "tick" }), b)));
+    const room = share(bands[bands.length - 1], full) < 0.8; // for the end's number beside the last limit's
+    this.numbers.replaceChildren(h("span", {}, "0"), ...bands.map((b) => at(h("span", {}, b.toFixed(0)), b)), ...(room ? [at(h("span", { class: "end" }, full.toFixed(0)), full)] : []));
   }
 }
 
@@ -48,10 +61,11 @@ export class BrainPanel {
   private readonly note = h("p", { class: "note" }, "");
   private readonly modes: HTMLButtonElement[];
   private readonly section: SectionView;
-  private readonly hidden = h("p", { class: "note" }, "By feel: the pressure is not shown in this step.");
-  private readonly shown: HTMLElement[]; // what a blind step hides
+  private readonly hidden = h("p", { class: "note" }, "");
+  private readonly shown: HTMLElement[]; // what a blind step or an exam hides
 
-  constructor(scene: Scene, private readonly redraw: () => void) {
+  /// `exam`: blind from beginning to end.
+  constructor(scene: Scene, private readonly redraw: () => void, private readonly exam = false) {
     this.section = new SectionView(scene, redraw);
     this.rows = (scene.brain?.blades ?? []).map(() => h("output", { class: "brainrow" }, ""));
     this.forms = (scene.brain?.blades ?? []).map(() => h("output", { class: "brainrow" }, ""));
@@ -63,8 +77,9 @@ export class BrainPanel {
       ramp, h("div", { class: "brainticks" }, ...["0", "10", "20", "30", "40 mmHg"].map((t) => h("span", {}, t))));
     const colours = h("div", { class: "segments", role: "group", "aria-label": "Colours of the pressure" }, ...this.modes);
     this.shown = [this.pressure.element, legend, this.dose.element, ...this.rows, colours, this.section.element];
-    this.hidden.hidden = true;
+    setText(this.hidden, exam ? "Exam: pressure and colours are not shown." : "By feel: the pressure is not shown in this step.");
     this.element.append(h("h2", {}, "Retraction"), this.hidden, this.pressure.element, legend, this.dose.element, this.timer, this.seen, ...this.rows, ...this.forms, colours, this.section.element, this.note);
+    this.blind(exam); // before the first frame is drawn; another panel may have left it otherwise
     this.choose(pressureView.mode);
   }
 
@@ -75,7 +90,6 @@ export class BrainPanel {
   }
 
   private blind(on: boolean): void {
-    if (pressureView.blind === on) return;
     pressureView.blind = on;
     this.hidden.hidden = !on;
     for (const one of this.shown) one.hidden = on;
@@ -83,7 +97,7 @@ export class BrainPanel {
 
   show(frame: Frame, scene: Scene): void {
     const r = frame.task?.retraction, brain = frame.brain;
-    this.blind(r?.blind ?? false);
+    this.blind(this.exam || (r?.blind ?? false));
     this.section.show(frame);
     if (r) {
       pressureView.threshold = r.bands[2];

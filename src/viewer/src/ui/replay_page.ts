@@ -1,12 +1,13 @@
 // A recorded session seen again: the same field and bars, with a time line that can be dragged.
 import type { App, Page } from "../app";
-import type { Result, ServerMessage, TimedEvent } from "../messages";
+import type { ReplayState, Result, ServerMessage, TimedEvent } from "../messages";
 import type { LineState } from "../net/connection";
 import { clear, h, setText } from "./dom";
 import { opticsBar } from "./field_view";
-import { clock, quantity, eventWords } from "./format";
+import { clock, listed, quantity, eventWords } from "./format";
 import { focusUses, microscopeKey, microscopeMouse } from "./microscope_keys";
 import { BrainPanel } from "./brain_panel";
+import { errorCard, isOf, kClosed, refusalCard, showsRecording } from "./own_recording";
 import { ForcePanel, StepPanel, WarningList } from "./panels";
 import { TissuePanel } from "./tissue_panel";
 import { StitchList } from "./stitch_panel";
@@ -17,7 +18,7 @@ const kBehind = 0.5; // [s], more than two pictures of a session of twelve minut
 
 export class ReplayPage implements Page {
   readonly title = "Replay";
-  readonly element = h("div", { class: "page live replay" });
+  readonly element = h("div", { class: "page live replay foreign" });
   private readonly id: string;
   private readonly view;
   private readonly left = h("aside", { class: "left" });
@@ -47,6 +48,7 @@ export class ReplayPage implements Page {
   private dragging = false;
   private wanted: number | null; // [s], where the address of the page asks to go
   private opened = false;
+  private refused = false; // its card stays until it is answered
 
   /// `blind`: what a rater is shown, the field alone without what the simulator found.
   constructor(private readonly app: App, argument: string, private readonly blind = false) {
@@ -61,7 +63,8 @@ export class ReplayPage implements Page {
     this.scrub.addEventListener("change", () => { this.dragging = false; this.seek(Number(this.scrub.value)); });
     const transport = h("div", { class: "transport", role: "group", "aria-label": "Replay" }, this.play, h("div", { class: "timeline" }, this.ready, this.marks, this.scrub), this.clock);
     this.element.append(this.left, h("div", { class: "middle" }, this.view.element, this.warnings.element, this.over), this.right, transport, opticsBar(this.view));
-    this.over.append(h("p", { class: "loading", role: "status" }, "Opening the recording…"));
+    this.showOpening();
+    this.join();
     if (app.online && app.hello) this.open();
     this.view.start();
   }
@@ -69,18 +72,19 @@ export class ReplayPage implements Page {
   focus(): void { this.play.focus({ preventScroll: true }); }
 
   onmessage(message: ServerMessage): void {
+    if (!isOf(this.app, this.id, message)) return;
     switch (message.type) {
-      case "hello": this.opened = false; this.open(); break;
+      case "hello": this.forget(); this.open(); break;
+      case "session_state": this.showWhose(); break;
       case "scene": this.describe(); break;
       case "replay_state": this.showState(); break;
       case "result":
         if (this.blind) break;
-        this.events = message.events;
-        this.result = message;
+        this.keep(message);
         this.describe();
         break;
       case "frame": this.showFrame(); break;
-      case "error": if (!this.forces) this.over.replaceChildren(h("div", { class: "card endcard" }, h("p", {}, message.what), h("a", { class: "button", href: "#/sessions" }, "All sessions"))); break;
+      case "error": if (!this.steps || message.code === "not-in-control") this.showRefusal(message); break;
       default: break;
     }
   }
@@ -88,7 +92,7 @@ export class ReplayPage implements Page {
   online(state: LineState): void { this.element.dataset.line = state; }
 
   onkey(event: KeyboardEvent): boolean {
-    const step = event.shiftKey ? 5 : 1, now = this.app.replay?.time ?? 0, end = this.app.replay?.duration ?? 0;
+    const step = event.shiftKey ? 5 : 1, now = this.replay?.time ?? 0, end = this.replay?.duration ?? 0;
     if (document.activeElement !== this.scrub && focusUses(event)) return false; // the line of time seeks by whole seconds, as the page does
     switch (event.key) {
       case " ": this.toggle(); return true;
@@ -109,26 +113,79 @@ export class ReplayPage implements Page {
     this.view.onclick = () => {};
     this.view.mark([]);
     this.view.stop();
-    if (this.app.session?.state === "replay") this.app.send({ type: "stop" });
+    if (showsRecording(this.app, this.id) && this.app.session?.in_control) this.app.send({ type: "stop" });
     this.app.replay = null;
   }
+
+  private get replay(): ReplayState | null { return this.app.replay?.session === this.id ? this.app.replay : null; }
 
   private open(): void {
     if (this.opened) return;
     this.opened = this.app.send({ type: "replay_open", session: this.id });
   }
 
+  private keep(result: Result): void {
+    this.events = listed(result.events);
+    this.result = result;
+  }
+
+  /// Another browser has opened it, and its scene and result have come already: nobody sends them again.
+  private join(): void {
+    if (this.app.session?.in_control || !showsRecording(this.app, this.id)) return;
+    if (this.app.result?.session === this.id && !this.blind) this.keep(this.app.result);
+    this.showWhose();
+    this.showState();
+    this.showFrame();
+  }
+
+  private showOpening(): void { this.over.replaceChildren(h("p", { class: "loading", role: "status" }, "Opening the recording…")); }
+
+  /// As before anything of the recording has come.
+  private forget(): void {
+    this.opened = this.refused = false;
+    this.steps = this.forces = this.brain = this.stitches = this.tissue = null;
+    this.element.classList.add("foreign");
+    clear(this.left);
+    clear(this.right);
+    this.warnings.show([]);
+    this.showOpening();
+  }
+
+  /// The trainer does something else, or does again what this page shows.
+  private showWhose(): void {
+    const mine = showsRecording(this.app, this.id);
+    if (mine && !this.steps && this.app.session?.state === "replay") this.describe();
+    if (mine || !this.steps) return;
+    this.forget();
+    this.opened = this.refused = true;
+    this.over.replaceChildren(refusalCard(kClosed, "Open it again", () => this.again()));
+  }
+
+  private showRefusal(message: { code: string; what: string }): void {
+    this.refused = true;
+    const watch = h("button", { onclick: () => this.again() }, "Watch");
+    this.over.replaceChildren(errorCard(this.app, message, () => this.again(), ...(this.steps ? [watch] : [])));
+  }
+
+  /// After a refusal: goes on with what is shown, or asks once more.
+  private again(): void {
+    this.refused = false;
+    if (this.steps) return clear(this.over);
+    this.forget();
+    this.open();
+  }
+
   private toggle(): void {
-    const state = this.app.replay;
+    const state = this.replay;
     if (!state) return;
     if (!state.playing && state.time >= state.duration - 0.01) this.seek(0);
     this.app.send({ type: state.playing ? "pause" : "play" });
   }
 
   private seek(time: number): void {
-    const end = this.app.replay?.duration ?? 0;
+    const end = this.replay?.duration ?? 0;
     const to = Math.min(end, Math.max(0, time));
-    if (this.app.replay) this.app.replay.time = to;
+    if (this.replay) this.replay.time = to;
     this.app.send({ type: "seek", time: to });
     this.showTime(to, end);
     this.showReady();
@@ -149,7 +206,10 @@ export class ReplayPage implements Page {
 
   private describe(): void {
     const { scene } = this.app;
-    if (!scene) return;
+    if (!scene || !showsRecording(this.app, this.id)) return;
+    this.element.classList.remove("foreign");
+    this.refused = false;
+    clear(this.over);
     clear(this.left);
     clear(this.right);
     this.steps = new StepPanel(scene.title);
@@ -178,7 +238,7 @@ export class ReplayPage implements Page {
   private showStitch(stitch: number, go: boolean): void {
     this.view.mark(this.stitches?.passesOf(stitch) ?? []);
     const time = this.result?.stitches?.[stitch]?.time;
-    if (go && time != null && (this.app.replay?.time ?? 0) < time) this.seek(time);
+    if (go && time != null && (this.replay?.time ?? 0) < time) this.seek(time);
   }
 
   /// A click on a stitch in the field chooses it.
@@ -188,7 +248,7 @@ export class ReplayPage implements Page {
   }
 
   private showState(): void {
-    const state = this.app.replay;
+    const state = this.replay;
     if (!state) return;
     this.showReady();
     this.scrub.max = String(state.duration);
@@ -204,8 +264,8 @@ export class ReplayPage implements Page {
 
   /// A recording is stepped anew: a moment that the computation has not come to yet is said to come.
   private showReady(): void {
-    const state = this.app.replay;
-    if (!state) return;
+    const state = this.replay;
+    if (!state || this.refused) return;
     const share = state.duration > 0 ? Math.min(1, state.ready / state.duration) : 1;
     this.ready.style.width = `calc(${(100 * share).toFixed(1)}% - 16px)`;
     const waits = state.time > state.ready + kBehind;
@@ -223,7 +283,7 @@ export class ReplayPage implements Page {
   }
 
   private showMarks(): void {
-    const duration = this.app.replay?.duration ?? 0;
+    const duration = this.replay?.duration ?? 0;
     clear(this.marks);
     if (duration <= 0) return;
     for (const event of this.events) this.marks.append(h("span", { style: `left:${((100 * event.time) / duration).toFixed(2)}%`, title: `${event.time.toFixed(1)} s ${eventWords(event)}` }));
@@ -232,14 +292,14 @@ export class ReplayPage implements Page {
   private showFrame(): void {
     const { frame } = this.app;
     const now = performance.now();
-    if (!frame) return;
+    if (!frame || !this.steps) return;
     window.clearTimeout(this.later);
     if (now - this.lastPanels < kPanelsEvery) { // the last frame of a jump is shown, too
       this.later = window.setTimeout(() => this.showFrame(), kPanelsEvery);
       return;
     }
     this.lastPanels = now;
-    this.steps?.show(frame.task, frame.time);
+    this.steps.show(frame.task, frame.time);
     if (this.blind) return;
     this.warnings.show(frame.task?.warnings ?? []);
     if (this.app.scene) this.brain?.show(frame, this.app.scene);
