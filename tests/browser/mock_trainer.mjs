@@ -68,6 +68,7 @@ export function startMock({ port = 0, duration = 8 } = {}) {
   }, 1000 / 60);
   return new Promise((resolve) => http.listen(port, "127.0.0.1", () => resolve({
     address: `http://127.0.0.1:${http.address().port}/`, state,
+    nextScene: () => { for (const me of state.sockets) { for (; me.credit > 0; --me.credit) me.socket.send(JSON.stringify(frameAt(state.time, ++me.id, duration))); me.socket.send(JSON.stringify(kScene)); } },
     dropSockets: () => { for (const { socket } of state.sockets) socket.terminate(); },
     close: () => { clearInterval(timer); for (const { socket } of state.sockets) socket.terminate(); return new Promise((done) => http.close(done)); },
   })));

@@ -152,6 +152,15 @@ it("sends poses of the active hand from the mouse, and of both hands from the ke
   expect(last(1)!.position).toEqual(parked.position);
 });
 
+it("answers frames that a new scene overtakes before they are drawn, and goes on", async () => {
+  await start("demo");
+  for (let k = 0; k < 3; ++k) {
+    const acks = mock.state.acks;
+    mock.nextScene();
+    await until(() => mock.state.acks, (now) => now > acks + 4, "frames are drawn again");
+  }
+});
+
 it("comes back by itself after the line was dropped, and goes on steering", async () => {
   const { page } = opened;
   await start("pointer");

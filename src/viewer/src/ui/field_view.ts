@@ -46,8 +46,8 @@ export class FieldView {
   }
 
   describe(scene: Scene): void {
+    this.answer(); // the trainer sends no more than two frames that nobody has answered
     this.frame = null;
-    this.waiting.length = 0;
     this.microscope.describe(scene);
     this.changed();
   }
@@ -157,11 +157,13 @@ export class FieldView {
     this.dirty = false;
     if (this.frame) this.take(this.frame);
     this.microscope.draw();
-    if (this.frame && this.waiting.length > 0) {
-      this.ondrawn(this.waiting, this.frame);
-      this.waiting.length = 0;
-    }
+    this.answer();
   };
+
+  private answer(): void {
+    if (this.frame && this.waiting.length > 0) this.ondrawn(this.waiting, this.frame);
+    this.waiting.length = 0;
+  }
 
   private fit(): void {
     const box = this.element.getBoundingClientRect();
