@@ -8,6 +8,7 @@
 #include "base/numbers.h"
 #include "training/cut_line.h"
 #include "training/stitch_knot.h"
+#include "training/stitch_pairs.h"
 
 namespace filum {
 namespace {
@@ -26,9 +27,10 @@ int passes_done(const TissueObservation& t) {
 double thread_left(const Observation& o) {
   const double start = o.n_parted == 0 ? 0.0 : o.arc[static_cast<std::size_t>(o.parted[static_cast<std::size_t>(o.n_parted - 1)] + 1)];
   for (int i = 0; i < o.tissue.n_passes; ++i) {
-    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
-    if (arc < 0.0) return kNaN;
-    if (arc >= start) return arc - start;
+    const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(i)];
+    if (is_lost(p)) continue;
+    if (p.arc < 0.0) return kNaN;
+    if (p.arc >= start) return p.arc - start;
   }
   return kNaN;
 }
@@ -142,14 +144,16 @@ void NeedleWatch::follow_cuts(const Observation& o) {
     if (o.tissue.passes[static_cast<std::size_t>(i)].arc < 0.0) whole_front_[static_cast<std::size_t>(i)] = whole_ ? 1 : 0;
 }
 
-/// The thread through the first so many ways is cut on either side of each.
+/// The thread through the first so many ways that hold thread is cut on either side of each.
 bool NeedleWatch::cut_off(const Observation& o, int passes) const {
-  if (o.tissue.n_passes < passes) return false;
-  for (int i = 0; i < passes; ++i) {
-    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
-    if (arc < 0.0 || whole_front_[static_cast<std::size_t>(i)] != 0 || piece_at(o, arc).last == o.n_nodes - 1) return false;
+  int cut = 0;
+  for (int i = 0; i < o.tissue.n_passes && cut < passes; ++i) {
+    const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(i)];
+    if (is_lost(p)) continue;
+    if (p.arc < 0.0 || whole_front_[static_cast<std::size_t>(i)] != 0 || piece_at(o, p.arc).last == o.n_nodes - 1) return false;
+    ++cut;
   }
-  return true;
+  return cut == passes;
 }
 
 bool NeedleWatch::tied(const NeedleGoal& g, const Observation& o) {

@@ -9,7 +9,7 @@
 //   tie      a knot of so many throws holds those ways, drawn down until no more thread is in its loop than `loop`, for `seconds`, and of the
 //            classes of `knot` if any is asked for; looked at every quarter of a second
 //   stitch   whole stitches at the places, and in the turn, that a technique asks for (training/stitch_order.h)
-//   cut      the thread is cut on either side of the first so many ways: before them as well where a fresh suture begins
+//   cut      the thread is cut on either side of the first so many ways that hold thread: before them as well where a fresh suture begins
 // Events: goal-done, stitch-out-of-turn. Test: needle_watch_test.
 
 #include <limits>
