@@ -86,7 +86,7 @@ void StitchOrder::take(const Made& m, double time, std::vector<TaskEvent>& event
 }
 
 void StitchOrder::observe(const Observation& o, std::vector<TaskEvent>& events) {
-  pairs_.observe(o.tissue);
+  pairs_.observe(o);
   for (; taken_ < pairs_.made().size(); ++taken_) {
     const std::array<int, 2>& pair = pairs_.made()[taken_];
     Made m{pair[0], pair[1], {}, -1};

@@ -39,9 +39,15 @@ void add_stitch(TissueObservation& t, double x, double bite_in, double bite_out,
   }
 }
 
+Observation seen(const TissueObservation& t) {
+  Observation o;
+  o.tissue = t;
+  return o;
+}
+
 std::vector<Stitch> stitches_in(const TissueObservation& t, const TissueDescription& scene, const std::vector<double>& times = {}) {
   StitchPairs pairs;
-  pairs.observe(t);
+  pairs.observe(seen(t));
   return stitches_of(t, pairs.with_needle(t), times, scene);
 }
 
@@ -273,7 +279,7 @@ TEST(Lapse, OnlyThreadThroughBothSidesJoins) {
   t.passes[5].state = PassObservation::State::needle;
   t.n_passes = 6;
   StitchPairs pairs;
-  pairs.observe(t);
+  pairs.observe(seen(t));
   t.passes[3].state = PassObservation::State::torn;  // after the stitch was made
   const auto s = stitches_of(t, pairs.with_needle(t), {}, card());
   ASSERT_EQ(s.size(), 3u);
