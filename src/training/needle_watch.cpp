@@ -255,6 +255,7 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
   events.push_back({o.time, "goal-done", task_.goals[static_cast<std::size_t>(step_)].tool, step_ + 1.0, "-", {}});
   ++step_;
   kept_ = 0.0;
+  tied_ = false;
 }
 
 NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Observation* last) const {

@@ -91,7 +91,7 @@ class NeedleWatch {
   int used_ = 0;                         // ways through the tissue that belong to eyes
   double kept_ = 0.0, time_ = 0.0;       // [s]
   double next_knot_ = 0.0;               // [s], when the thread is looked at for knots again
-  bool tied_ = false;                    // then
+  bool tied_ = false;                    // at the last look for this goal
   double angle_sum_ = 0.0, share_sum_ = 0.0, angle_time_ = 0.0, square_ = 0.0, present_time_ = 0.0;
 };
 

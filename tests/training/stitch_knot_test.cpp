@@ -177,6 +177,37 @@ TEST(StitchKnot, TyingIsDoneWhenTheKnotHoldsTheBitesAndIsDrawnDown) {
   EXPECT_TRUE(watch.done());
 }
 
+/// The look at the first one's knot says nothing of the second's.
+TEST(StitchKnot, ASecondTieIsLookedAtAnew) {
+  NeedleGoal one;
+  one.kind = NeedleGoal::Kind::tie;
+  one.passes = 2;
+  one.throws = 1;
+  one.loop = 1.0;
+  one.seconds = 0.3;
+  NeedleGoal two = one;
+  two.seconds = 0.2;
+  two.knots = {"square"};
+  NeedleTask task;
+  task.goals = {one, two};
+  task.has_tissue = true;
+  NeedleWatch watch(task, {});
+  std::vector<TaskEvent> events;
+  Observation o = trefoil(1e-3, 5e-3, 8e-3);
+  const double middle = 0.5 * (knot_in(o).begin + knot_in(o).end);
+  o.tissue.n_passes = 2;
+  for (std::size_t i = 0; i < 2; ++i) {
+    o.tissue.passes[i].out = true;
+    o.tissue.passes[i].state = PassObservation::State::thread;
+    o.tissue.passes[i].arc = middle + (i == 0 ? -1e-4 : 1e-4);
+  }
+  for (int step = 0; step < 500; ++step) {
+    o.time = 2e-3 * step;
+    watch.observe(o, 2e-3, true, events);
+  }
+  EXPECT_EQ(watch.step(), 1) << "one throw is no square knot";
+}
+
 /// Both one after the other in one thread.
 Observation in_a_row(const Observation& a, const Observation& b) {
   Observation o = a;
