@@ -276,7 +276,7 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
     s.tear_time = std::fmin(tear_time_[static_cast<std::size_t>(s.first)], s.second < 0 ? kNaN : tear_time_[static_cast<std::size_t>(s.second)]);
     if (last != nullptr) name_tension(*last, s);
   }
-  if (last != nullptr && !r.stitches.empty()) for (const StitchKnot& k : knots_in_tissue(*last)) name_knots(k, tissue_, r.stitches);
+  if (last != nullptr && !r.stitches.empty()) for (const StitchKnot& k : knots_in_tissue(*last, KnotOptions().closures, whole_front_)) name_knots(k, tissue_, r.stitches);
   const std::vector<double> ways = ways_to_next(r.stitches, scene_.tissue);
   for (std::size_t k = 0; k < ways.size(); ++k) r.stitches[k].next = ways[k];
   const bool complete = done() && std::isfinite(task_.lapses.line_gap);  // no other rules ask for the whole way round
