@@ -286,10 +286,10 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
   r.join = join;
   if (blood_.clamps().any()) r.clamps = blood_.clamps();
   if (blood_.milking().tests() + blood_.milking().spoiled > 0 || !std::isnan(blood_.milking().volume)) r.milking = blood_.milking();
-  if (join) {
+  if (join && join->sound) {
     find_join_lapses(task_.lapses, *join, time_, r.lapses);
     find_gap_lapses(task_.lapses, *join, scene_.tissue, r.stitches, complete, time_, r.lapses);
-    r.line_tested = complete && join->sound && !join->edge.empty();
+    r.line_tested = complete && !join->edge.empty();
   }
   mark_critical(task_.lapses, r.lapses);
   r.soundness = tissue_.soundness;

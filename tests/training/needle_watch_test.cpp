@@ -314,6 +314,17 @@ TEST(NeedleWatch, TheLineIsTestedWhenTheTaskIsDoneAndItsJoinWasTested) {
   EXPECT_FALSE(tested(loose, join));
 }
 
+TEST(NeedleWatch, AnUnsoundTestOfTheJoinFindsNoLapse) {
+  NeedleTask task;
+  task.has_tissue = true;
+  JoinReport join;
+  join.overlap = 2.0 * task.lapses.overlap;
+  join.thread_inside = 2.0 * task.lapses.thread_inside;
+  EXPECT_EQ(NeedleWatch(task, {}).report(join).lapses.size(), 2u);
+  join.sound = false;
+  EXPECT_TRUE(NeedleWatch(task, {}).report(join).lapses.empty());
+}
+
 TEST(NeedleWatch, BothEndsOfAFreshSutureMustBeCut) {
   CutThread t;
   t.sew(0, 4e-3);
