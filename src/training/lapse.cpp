@@ -35,7 +35,7 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut,
   // Two stumps lie apart in the open clamp, and that space is no part of a bite.
   const bool stumps = scene.lumen && scene.edges[0].rim.empty();
   const double across = stumps && whole ? s.bite[0] + s.bite[1] : cut.across(in, out);
-  s.obliquity = std::atan2(std::abs(cut.along(in, out)), across);
+  s.obliquity = whole ? std::atan2(std::abs(cut.along(in, out)), across) : kNaN;
   s.depth = std::min(p.depth_share, q.depth_share);
   s.position = cut.position(in, out);
   s.tension = std::max(p.tension, q.tension);

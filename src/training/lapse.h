@@ -44,7 +44,7 @@ struct Stitch {
   double tear_time = std::numeric_limits<double>::quiet_NaN();  // [s], when it had torn as far as counts
   double bite[2] = {0, 0};        // [m], distance from the cut on either side; the second NaN for half a stitch
   double entry_angle = 0.0, exit_angle = 0.0;  // [rad], of the needle against the surface
-  double obliquity = 0.0;         // [rad], of the line from entry to exit against the normal of the cut, seen from above
+  double obliquity = 0.0;         // [rad], of the line from entry to exit against the normal of the cut, seen from above; NaN for half a stitch
   double depth = 0.0;             // share of the thickness, the least of both sides
   double position = 0.0;          // [m], along the cut
   double tension = 0.0;           // [N], in the thread that is left in it

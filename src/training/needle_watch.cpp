@@ -8,6 +8,7 @@
 #include "base/numbers.h"
 #include "training/cut_line.h"
 #include "training/stitch_knot.h"
+#include "training/stitch_pairs.h"
 
 namespace filum {
 namespace {
@@ -26,9 +27,10 @@ int passes_done(const TissueObservation& t) {
 double thread_left(const Observation& o) {
   const double start = o.n_parted == 0 ? 0.0 : o.arc[static_cast<std::size_t>(o.parted[static_cast<std::size_t>(o.n_parted - 1)] + 1)];
   for (int i = 0; i < o.tissue.n_passes; ++i) {
-    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
-    if (arc < 0.0) return kNaN;
-    if (arc >= start) return arc - start;
+    const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(i)];
+    if (is_lost(p)) continue;
+    if (p.arc < 0.0) return kNaN;
+    if (p.arc >= start) return p.arc - start;
   }
   return kNaN;
 }
@@ -142,14 +144,16 @@ void NeedleWatch::follow_cuts(const Observation& o) {
     if (o.tissue.passes[static_cast<std::size_t>(i)].arc < 0.0) whole_front_[static_cast<std::size_t>(i)] = whole_ ? 1 : 0;
 }
 
-/// The thread through the first so many ways is cut on either side of each.
+/// The thread through the first so many ways that hold thread is cut on either side of each.
 bool NeedleWatch::cut_off(const Observation& o, int passes) const {
-  if (o.tissue.n_passes < passes) return false;
-  for (int i = 0; i < passes; ++i) {
-    const double arc = o.tissue.passes[static_cast<std::size_t>(i)].arc;
-    if (arc < 0.0 || whole_front_[static_cast<std::size_t>(i)] != 0 || piece_at(o, arc).last == o.n_nodes - 1) return false;
+  int cut = 0;
+  for (int i = 0; i < o.tissue.n_passes && cut < passes; ++i) {
+    const PassObservation& p = o.tissue.passes[static_cast<std::size_t>(i)];
+    if (is_lost(p)) continue;
+    if (p.arc < 0.0 || whole_front_[static_cast<std::size_t>(i)] != 0 || piece_at(o, p.arc).last == o.n_nodes - 1) return false;
+    ++cut;
   }
-  return true;
+  return cut == passes;
 }
 
 bool NeedleWatch::tied(const NeedleGoal& g, const Observation& o) {
@@ -251,6 +255,7 @@ void NeedleWatch::observe(const Observation& o, double dt, bool scored, std::vec
   events.push_back({o.time, "goal-done", task_.goals[static_cast<std::size_t>(step_)].tool, step_ + 1.0, "-", {}});
   ++step_;
   kept_ = 0.0;
+  tied_ = false;
 }
 
 NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Observation* last) const {
@@ -271,7 +276,7 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
     s.tear_time = std::fmin(tear_time_[static_cast<std::size_t>(s.first)], s.second < 0 ? kNaN : tear_time_[static_cast<std::size_t>(s.second)]);
     if (last != nullptr) name_tension(*last, s);
   }
-  if (last != nullptr && !r.stitches.empty()) for (const StitchKnot& k : knots_in_tissue(*last)) name_knots(k, tissue_, r.stitches);
+  if (last != nullptr && !r.stitches.empty()) for (const StitchKnot& k : knots_in_tissue(*last, KnotOptions().closures, whole_front_)) name_knots(k, tissue_, r.stitches);
   const std::vector<double> ways = ways_to_next(r.stitches, scene_.tissue);
   for (std::size_t k = 0; k < ways.size(); ++k) r.stitches[k].next = ways[k];
   const bool complete = done() && std::isfinite(task_.lapses.line_gap);  // no other rules ask for the whole way round
@@ -281,10 +286,10 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
   r.join = join;
   if (blood_.clamps().any()) r.clamps = blood_.clamps();
   if (blood_.milking().tests() + blood_.milking().spoiled > 0 || !std::isnan(blood_.milking().volume)) r.milking = blood_.milking();
-  if (join) {
+  if (join && join->sound) {
     find_join_lapses(task_.lapses, *join, time_, r.lapses);
     find_gap_lapses(task_.lapses, *join, scene_.tissue, r.stitches, complete, time_, r.lapses);
-    r.line_tested = complete && join->sound && !join->edge.empty();
+    r.line_tested = complete && !join->edge.empty();
   }
   mark_critical(task_.lapses, r.lapses);
   r.soundness = tissue_.soundness;

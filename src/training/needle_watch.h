@@ -9,7 +9,7 @@
 //   tie      a knot of so many throws holds those ways, drawn down until no more thread is in its loop than `loop`, for `seconds`, and of the
 //            classes of `knot` if any is asked for; looked at every quarter of a second
 //   stitch   whole stitches at the places, and in the turn, that a technique asks for (training/stitch_order.h)
-//   cut      the thread is cut on either side of the first so many ways: before them as well where a fresh suture begins
+//   cut      the thread is cut on either side of the first so many ways that hold thread: before them as well where a fresh suture begins
 // Events: goal-done, stitch-out-of-turn. Test: needle_watch_test.
 
 #include <limits>
@@ -91,7 +91,7 @@ class NeedleWatch {
   int used_ = 0;                         // ways through the tissue that belong to eyes
   double kept_ = 0.0, time_ = 0.0;       // [s]
   double next_knot_ = 0.0;               // [s], when the thread is looked at for knots again
-  bool tied_ = false;                    // then
+  bool tied_ = false;                    // at the last look for this goal
   double angle_sum_ = 0.0, share_sum_ = 0.0, angle_time_ = 0.0, square_ = 0.0, present_time_ = 0.0;
 };
 

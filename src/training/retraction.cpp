@@ -75,7 +75,7 @@ void RetractionWatch::map_pressure(const Observation& o, double dt) {
 }
 
 void RetractionWatch::observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events) {
-  if (!scored || done()) return;
+  if (done()) return;
   const double peak = peak_of(o);
   pressure_.observe(peak, dt);
   for (std::size_t i = 0; i < static_cast<std::size_t>(o.brain.n_blades); ++i) {
@@ -93,6 +93,7 @@ void RetractionWatch::observe(const Observation& o, double dt, bool scored, std:
   report_.exposed = std::max(report_.exposed, o.brain.exposed);
   report_.perfusion_least = std::min(report_.perfusion_least, pressure_.perfusion());
   sample(o, peak);
+  if (!scored) return;
   const RetractionGoal& g = task_.goals[static_cast<std::size_t>(step_)];
   const bool now = met(g, o, peak);
   if (now && g.kind == RetractionGoal::Kind::hold) report_.hold_peak = std::max(report_.hold_peak, peak);

@@ -45,6 +45,7 @@ class RetractionWatch {
  public:
   RetractionWatch(const RetractionTask& task, double time_compression);
 
+  /// What is borne counts; goals are met only while `scored`.
   void observe(const Observation& o, double dt, bool scored, std::vector<TaskEvent>& events);
   int step() const { return step_; }
   bool blind() const { return !done() && task_.goals[static_cast<std::size_t>(step_)].blind; }

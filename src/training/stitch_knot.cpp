@@ -6,17 +6,17 @@ namespace filum {
 namespace {
 
 /// The longer and the shorter of the ends that were cut.
-void measure_tails(const Observation& o, const ThreadPart& piece, StitchKnot& k) {
+void measure_tails(const Observation& o, const ThreadPart& piece, bool cut_in_front, StitchKnot& k) {
   const double low = length_between(o, piece.first, piece.first + k.knot.core_begin);
   const double high = length_between(o, piece.first + k.knot.core_end, piece.last);
   const bool hangs_on_needle = piece.last == o.n_nodes - 1;
-  k.tail = hangs_on_needle ? low : !cut_in_front(o, piece) ? high : std::max(low, high);
-  k.short_tail = hangs_on_needle ? low : !cut_in_front(o, piece) ? high : std::min(low, high);
+  k.tail = hangs_on_needle ? low : !cut_in_front ? high : std::max(low, high);
+  k.short_tail = hangs_on_needle ? low : !cut_in_front ? high : std::min(low, high);
 }
 
 }  // namespace
 
-StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int closures) {
+StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int closures, bool cut_in_front) {
   StitchKnot k;
   if (piece.nodes() < 4) return k;
   KnotOptions options;
@@ -25,11 +25,11 @@ StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int clos
   if (k.knot.core_begin < 0) return k;
   k.begin = o.arc[static_cast<std::size_t>(piece.first + k.knot.core_begin)];
   k.end = o.arc[static_cast<std::size_t>(piece.first + k.knot.core_end)];
-  measure_tails(o, piece, k);
+  measure_tails(o, piece, cut_in_front, k);
   return k;
 }
 
-std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures) {
+std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures, const std::vector<char>& whole_front) {
   std::vector<StitchKnot> knots;
   std::vector<int> seen;  // first nodes of the pieces
   for (int i = 0; i < o.tissue.n_passes; ++i) {
@@ -38,7 +38,8 @@ std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures) {
     const ThreadPart piece = piece_at(o, arc);
     if (std::find(seen.begin(), seen.end(), piece.first) != seen.end()) continue;
     seen.push_back(piece.first);
-    knots.push_back(knot_in_piece(o, piece, closures));
+    const auto pass = static_cast<std::size_t>(i);
+    knots.push_back(knot_in_piece(o, piece, closures, pass < whole_front.size() && whole_front[pass] == 0));
   }
   return knots;
 }

@@ -26,11 +26,12 @@ struct StitchKnot {
   bool holds(double arc) const { return arc > begin && arc < end; }
 };
 
-/// `closures`: as in KnotOptions. Takes milliseconds.
-StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int closures = 5);
+/// `closures`: as in KnotOptions. `cut_in_front`: the piece's first end is a cut one; a fresh suture lies behind other pieces and begins whole.
+/// Takes milliseconds.
+StitchKnot knot_in_piece(const Observation& o, const ThreadPart& piece, int closures = 5, bool cut_in_front = false);
 
-/// Of each piece that goes through tissue.
-std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures = 5);
+/// Of each piece that goes through tissue. `whole_front`: of each way, whether its suture still begins where it was laid; all do if it is empty.
+std::vector<StitchKnot> knots_in_tissue(const Observation& o, int closures = 5, const std::vector<char>& whole_front = {});
 
 /// [m], shortest way round the bites that the knot's loop holds, as they are now: from hole to hole in straight lines, and back.
 double way_round(const StitchKnot& knot, const TissueObservation& tissue);

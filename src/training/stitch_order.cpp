@@ -76,17 +76,21 @@ void StitchOrder::take(const Made& m, double time, std::vector<TaskEvent>& event
   }
   made_.back().goal = goal;
   ++filled_[static_cast<std::size_t>(goal)];
-  for (Made& waits : made_) {  // its turn may have come
-    goal = turn();
-    if (goal < 0) return;
-    if (waits.goal >= 0 || !fits(goal, waits)) continue;
-    waits.goal = goal;
-    ++filled_[static_cast<std::size_t>(goal)];
+  for (bool filled = true; filled;) {  // the turn of those that wait may have come, in whatever order they were made
+    filled = false;
+    for (Made& waits : made_) {
+      goal = turn();
+      if (goal < 0) return;
+      if (waits.goal >= 0 || !fits(goal, waits)) continue;
+      waits.goal = goal;
+      ++filled_[static_cast<std::size_t>(goal)];
+      filled = true;
+    }
   }
 }
 
 void StitchOrder::observe(const Observation& o, std::vector<TaskEvent>& events) {
-  pairs_.observe(o.tissue);
+  pairs_.observe(o);
   for (; taken_ < pairs_.made().size(); ++taken_) {
     const std::array<int, 2>& pair = pairs_.made()[taken_];
     Made m{pair[0], pair[1], {}, -1};

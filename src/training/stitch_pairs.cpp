@@ -1,16 +1,30 @@
 #include "training/stitch_pairs.h"
 
+#include <limits>
+
+#include "training/thread_part.h"
+
 namespace filum {
+namespace {
+
+/// On one piece of thread; what the needle is in hangs on the last piece.
+bool on_one_piece(const Observation& o, const PassObservation& a, const PassObservation& b) {
+  const auto first = [&](const PassObservation& p) { return piece_at(o, p.arc < 0.0 ? std::numeric_limits<double>::infinity() : p.arc).first; };
+  return first(a) == first(b);
+}
+
+}  // namespace
 
 bool is_lost(const PassObservation& p) noexcept { return p.state == PassObservation::State::pulled_out || p.state == PassObservation::State::torn; }
 
 bool is_whole(const PassObservation& p) noexcept { return p.bite_entry * p.bite_exit < 0.0; }
 
-void StitchPairs::observe(const TissueObservation& t) {
-  const auto pass = [&](int k) -> const PassObservation& { return t.passes[static_cast<std::size_t>(k)]; };
-  for (; next_ < t.n_passes; ++next_) {
+void StitchPairs::observe(const Observation& o) {
+  const auto pass = [&](int k) -> const PassObservation& { return o.tissue.passes[static_cast<std::size_t>(k)]; };
+  for (; next_ < o.tissue.n_passes; ++next_) {
     const PassObservation& p = pass(next_);
     if (is_lost(p)) continue;
+    if (half_ >= 0 && !on_one_piece(o, pass(half_), p)) half_ = -1;
     if (!p.out || p.state != PassObservation::State::thread) return;
     if (is_whole(p)) continue;
     if (half_ < 0 || is_lost(pass(half_)) || pass(half_).side == p.side) {

@@ -34,6 +34,16 @@ bool TaskSession::scoring_paused(const Observation& o) {
   return lost || !any;
 }
 
+/// While an input is silent time stands still only as long as the hands that are left wait for it: the scene keeps what is done meanwhile, so the clock does too.
+bool TaskSession::at_work(const Observation& o) {
+  constexpr double kStill = 0.5e-3;  // [m], that a waiting hand may drift
+  for (std::size_t t = 0; t < static_cast<std::size_t>(o.n_tools); ++t) {
+    if (!paused_) rest_[t] = o.tools[t].X_WT.p;
+    working_ = working_ || (o.tools[t].input_valid && (o.tools[t].X_WT.p - rest_[t]).norm() > kStill);
+  }
+  return working_ = working_ && paused_;
+}
+
 /// Events that may come every step are kept only every kEventPause for each tool; all others are kept.
 bool TaskSession::crowds_out(const WorldEvent& e, double time) {
   constexpr std::array<std::string_view, 4> kFrequent = {"overrun", "slip", "solver-trouble",
@@ -75,17 +85,18 @@ void TaskSession::observe(const Observation& o) noexcept {
     last_ = o;
     take_events(o);
     if (done()) return;
-    if (!paused_) {
+    const bool timed = at_work(o) || !paused_;
+    if (timed) {
       elapsed_ += dt;
       take_sample(o);
     }
     if (needle_) {
       needle_->observe(o, dt, !paused_, events_);
     } else if (retraction_) {
-      retraction_->observe(o, dt, !paused_, events_);
+      if (timed) retraction_->observe(o, dt, !paused_, events_);
     } else if (task_.laboratory) {
       lab_.observe(o, dt, !paused_, events_);
-    } else {
+    } else if (!paused_) {
       recogniser_.observe(o, events_);
     }
   } catch (...) {
@@ -99,7 +110,7 @@ std::vector<TaskWarning> TaskSession::warnings() const {
   if (failed_)
     list.push_back({"danger", "scoring-stopped", "The trainer ran out of memory: scoring has stopped."});
   if (paused_)
-    list.push_back({"danger", "input-lost", "An instrument's input is silent: scoring is paused."});
+    list.push_back({"danger", "input-lost", "An instrument's input is silent: scoring is paused. Wait for it: time goes on if you work meanwhile."});
   if (last_.broken) list.push_back({"danger", "thread-broken", "The thread has broken."});
   const double strength = scene_.thread_strength;
   if (!last_.broken && strength > 0.0 && largest_tension(last_) > task_.recognition.overload * strength) {

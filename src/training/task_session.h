@@ -2,8 +2,8 @@
 // One run of a task: watches observations, says where the trainee is, and gives the result. Call observe()
 // after every step of the world, in order. It is cheap (sampling into reserved memory; the knot is looked at
 // five times a second of scene time, below a millisecond each for a thread of 200 nodes); it neither throws
-// nor blocks. Scored time stands still while an instrument that was driven before is not (input_valid false),
-// or none is. After the last step scoring stops; only the knot is still taken from the newest observation.
+// nor blocks. While an instrument that was driven before is not (input_valid false), or none is, no step and no goal
+// is met; scored time stands still then until an instrument that is still driven works on. After the last step scoring stops; only the knot is still taken from the newest observation.
 
 #include <array>
 #include <optional>
@@ -35,7 +35,7 @@ struct TaskStatus {
   double within = 0.0;             // [m], its reach
   double elapsed = 0.0;  // [s], scored time
   bool done = false;
-  bool paused = false;                // scoring stands still
+  bool paused = false;                // no step or goal is met
   std::string knot_class;             // as seen now
   std::vector<TaskWarning> warnings;  // in force now
   std::optional<PressureWatch> retraction;  // of brain retraction: pressure and dose now
@@ -64,6 +64,7 @@ class TaskSession {
 
  private:
   bool scoring_paused(const Observation& o);
+  bool at_work(const Observation& o);
   bool crowds_out(const WorldEvent& e, double time);
   void take_events(const Observation& o);
   void take_sample(const Observation& o);
@@ -83,6 +84,8 @@ class TaskSession {
   bool paused_ = true;
   bool failed_ = false;           // watching failed (out of memory): scoring stopped, said in the result
   std::array<bool, 3> driven_{};  // instrument has had a valid input
+  std::array<Vec3, 3> rest_{};    // [m], where each was when an input fell silent
+  bool working_ = false;          // and one has moved since
   std::array<std::array<double, 4>, 4>
       last_kept_{};              // [s], of each frequent kind and tool (from -1), -1 never
   double previous_time_ = -1.0;  // [s]

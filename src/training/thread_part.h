@@ -29,9 +29,6 @@ inline ThreadPart tied_part(const Observation& o) {
   return part;
 }
 
-/// The piece does not begin where the thread once did: that end was cut away, whether it still lies there or not.
-inline bool cut_in_front(const Observation& o, const ThreadPart& piece) { return piece.first > 0 || o.arc[0] > 0.0; }
-
 /// The whole piece about the thread's place `arc` [m] from its first end.
 inline ThreadPart piece_at(const Observation& o, double arc) {
   ThreadPart piece{0, o.n_nodes - 1};

@@ -88,7 +88,9 @@ TEST(CutLine, LapsesOfStitchesEndToSide) {
   add(bite(Vec3(0, 0, -0.8e-3), Vec3(0, 0, -0.9e-3), 0, false));
   const std::vector<double> times(kMaxPasses, 1.0);
   StitchPairs pairs;
-  pairs.observe(o);
+  Observation seen;
+  seen.tissue = o;
+  pairs.observe(seen);
   const auto stitches = stitches_of(o, pairs.made(), times, t);
   ASSERT_EQ(stitches.size(), 5u) << "three whole ones and two halves";
   const CutLine cut(t);

@@ -314,6 +314,17 @@ TEST(NeedleWatch, TheLineIsTestedWhenTheTaskIsDoneAndItsJoinWasTested) {
   EXPECT_FALSE(tested(loose, join));
 }
 
+TEST(NeedleWatch, AnUnsoundTestOfTheJoinFindsNoLapse) {
+  NeedleTask task;
+  task.has_tissue = true;
+  JoinReport join;
+  join.overlap = 2.0 * task.lapses.overlap;
+  join.thread_inside = 2.0 * task.lapses.thread_inside;
+  EXPECT_EQ(NeedleWatch(task, {}).report(join).lapses.size(), 2u);
+  join.sound = false;
+  EXPECT_TRUE(NeedleWatch(task, {}).report(join).lapses.empty());
+}
+
 TEST(NeedleWatch, BothEndsOfAFreshSutureMustBeCut) {
   CutThread t;
   t.sew(0, 4e-3);
@@ -345,6 +356,50 @@ TEST(NeedleWatch, AStrandThatBeginsAtACutIsCutInFront) {
   EXPECT_EQ(t.w.step(), 1) << "the needle hangs on it";
   t.cut(8);
   EXPECT_TRUE(t.w.done());
+}
+
+/// The first bite tore out and was taken anew: 4 mm are left before the first way that holds thread.
+TEST(NeedleWatch, AThreadIsDrawnThoughABiteWasLostBefore) {
+  for (const PassObservation::State lost : {PassObservation::State::torn, PassObservation::State::pulled_out}) {
+    NeedleTask task;
+    NeedleGoal draw;
+    draw.kind = NeedleGoal::Kind::draw;
+    draw.passes = 2;
+    draw.tail = 5e-3;
+    task.goals = {draw};
+    NeedleWatch w(task, {});
+    std::vector<TaskEvent> events;
+    Observation o = field();
+    o.tissue.n_passes = 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      o.tissue.passes[k].out = true;
+      o.tissue.passes[k].state = k == 0 ? lost : PassObservation::State::thread;
+      o.tissue.passes[k].arc = k == 0 ? -1.0 : 3.5e-3 + 0.5e-3 * static_cast<double>(k);
+    }
+    w.observe(o, kDt, true, events);
+    EXPECT_TRUE(w.done());
+  }
+}
+
+TEST(NeedleWatch, EndsAreCutThoughABiteWasLostBefore) {
+  CutThread t;
+  t.sew(0, 3e-3);
+  t.o.tissue.passes[0].state = PassObservation::State::torn;
+  t.o.tissue.passes[0].arc = -1.0;
+  t.sew(1, 4e-3);
+  t.cut(7);
+  t.cut(2);
+  EXPECT_EQ(t.w.step(), 0) << "only one way holds thread";
+  CutThread two;
+  two.sew(0, 3e-3);
+  two.o.tissue.passes[0].state = PassObservation::State::torn;
+  two.o.tissue.passes[0].arc = -1.0;
+  two.sew(1, 4e-3);
+  two.sew(2, 5e-3);
+  two.cut(7);
+  EXPECT_EQ(two.w.step(), 0) << "the short end is whole";
+  two.cut(2);
+  EXPECT_EQ(two.w.step(), 1);
 }
 
 }  // namespace needle_watch_test

@@ -44,6 +44,22 @@ struct Bench {
   }
 };
 
+/// A device that is waited for costs nothing; a blade that is moved meanwhile presses on the clock, and meets no goal.
+TEST(Retraction, PressureCountsWhileAnotherDeviceIsSilentAndThisOneWorks) {
+  Bench b("press-to-target");
+  b.hold(0, 1);
+  b.o.tools[1].input_valid = false;
+  b.hold(25, 10);
+  EXPECT_EQ(b.session.finish().pressure->dose, 0.0);
+  b.o.tools[0].X_WT.p.x() += 1e-3;
+  b.hold(25, 10);
+  const PressureReport waited = *b.session.finish().pressure;
+  EXPECT_NEAR(waited.peak / kMmHg, 25.0, 1e-9);
+  EXPECT_GT(waited.dose, 0.0);
+  b.hold(15, 10);
+  EXPECT_EQ(b.session.status().step_index, 0);
+}
+
 TEST(Retraction, PressingToTheBandThreeTimesPasses) {
   Bench b("press-to-target");
   for (int k = 0; k < 3; ++k) {

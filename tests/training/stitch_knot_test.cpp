@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -177,6 +178,37 @@ TEST(StitchKnot, TyingIsDoneWhenTheKnotHoldsTheBitesAndIsDrawnDown) {
   EXPECT_TRUE(watch.done());
 }
 
+/// The look at the first one's knot says nothing of the second's.
+TEST(StitchKnot, ASecondTieIsLookedAtAnew) {
+  NeedleGoal one;
+  one.kind = NeedleGoal::Kind::tie;
+  one.passes = 2;
+  one.throws = 1;
+  one.loop = 1.0;
+  one.seconds = 0.3;
+  NeedleGoal two = one;
+  two.seconds = 0.2;
+  two.knots = {"square"};
+  NeedleTask task;
+  task.goals = {one, two};
+  task.has_tissue = true;
+  NeedleWatch watch(task, {});
+  std::vector<TaskEvent> events;
+  Observation o = trefoil(1e-3, 5e-3, 8e-3);
+  const double middle = 0.5 * (knot_in(o).begin + knot_in(o).end);
+  o.tissue.n_passes = 2;
+  for (std::size_t i = 0; i < 2; ++i) {
+    o.tissue.passes[i].out = true;
+    o.tissue.passes[i].state = PassObservation::State::thread;
+    o.tissue.passes[i].arc = middle + (i == 0 ? -1e-4 : 1e-4);
+  }
+  for (int step = 0; step < 500; ++step) {
+    o.time = 2e-3 * step;
+    watch.observe(o, 2e-3, true, events);
+  }
+  EXPECT_EQ(watch.step(), 1) << "one throw is no square knot";
+}
+
 /// Both one after the other in one thread.
 Observation in_a_row(const Observation& a, const Observation& b) {
   Observation o = a;
@@ -213,16 +245,30 @@ TEST(StitchKnot, EveryPieceOfTheThreadHasItsOwnKnot) {
   EXPECT_EQ(knots_in_tissue(o).size(), 1u) << "one thread, one look";
 }
 
-/// A fresh suture has taken away what was cut off before the first piece: its arcs tell.
-TEST(StitchKnot, AnEndWhoseRestIsGoneIsACutEnd) {
-  Observation o = cut_at(trefoil(1e-3, 5e-3, 8e-3), {150});
-  const StitchKnot whole = knot_in_piece(o, {0, 150});
-  EXPECT_FALSE(cut_in_front(o, {0, 150}));
-  EXPECT_TRUE(cut_in_front(o, {151, o.n_nodes - 1}));
-  for (double& arc : o.arc) arc += 4e-3;
-  EXPECT_TRUE(cut_in_front(o, {0, 150}));
-  const StitchKnot k = knot_in_piece(o, {0, 150});
-  EXPECT_NEAR(k.tail, std::max(whole.begin, whole.tail), 1e-9) << "the longer of two cut ends, not the one behind";
+TEST(StitchKnot, OfTwoCutEndsTheLongerAndTheShorterAreTold) {
+  const Observation o = cut_at(trefoil(1e-3, 5e-3, 8e-3), {150});
+  const StitchKnot whole = knot_in_piece(o, {0, 150}), k = knot_in_piece(o, {0, 150}, 5, true);
+  EXPECT_EQ(whole.tail, whole.short_tail) << "only the one behind was cut";
+  EXPECT_NEAR(k.tail, std::max(whole.begin, whole.tail), 1e-9);
+  EXPECT_NEAR(k.short_tail, std::min(whole.begin, whole.tail), 1e-9);
+}
+
+/// Two sutures, alike but for their turn: the long end of each is cut, the short end is as it was laid until it is cut, too.
+TEST(StitchKnot, TheTailsOfALaterSutureAreThoseOfTheFirst) {
+  const Observation one = trefoil(1e-3, 9e-3, 8e-3);
+  const int n = one.n_nodes;
+  Observation o = cut_at(in_a_row(one, one), {n - 9, n - 1, 2 * n - 9});
+  o.tissue.n_passes = 2;
+  for (std::size_t i = 0; i < 2; ++i) o.tissue.passes[i].arc = o.arc[i * static_cast<std::size_t>(n)] + 0.5 * one.arc.back();
+  const auto tails = [&](const std::vector<char>& whole_front) {
+    const std::vector<StitchKnot> k = knots_in_tissue(o, 5, whole_front);
+    return std::array<double, 4>{k[0].tail, k[0].short_tail, k[1].tail, k[1].short_tail};
+  };
+  const auto laid = tails({1, 1}), second_cut = tails({1, 0});
+  EXPECT_NEAR(laid[0], laid[2], 1e-9);
+  EXPECT_NEAR(laid[1], laid[3], 1e-9);
+  EXPECT_NEAR(second_cut[1], laid[1], 1e-9);
+  EXPECT_GT(second_cut[2], laid[2] + 1e-3) << "now the short end counts";
 }
 
 }  // namespace stitch_knot_test

@@ -28,7 +28,8 @@ TissueDescription vessel() {
 class Vessel {
  public:
   explicit Vessel(const std::string& task, const TissueDescription& tissue = vessel())
-      : task_(load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + task + "/task.yaml")), tissue_(tissue), order_(task_.needle->goals, tissue_) {
+      : Vessel(load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + task + "/task.yaml").needle->goals, tissue) {}
+  explicit Vessel(const std::vector<NeedleGoal>& goals, const TissueDescription& tissue = vessel()) : goals_(goals), tissue_(tissue), order_(goals_, tissue_) {
     o_.n_nodes = 4;  // a straight thread, so that there is no knot
     o_.positions.setZero(3, 4);
     o_.arc.resize(4);
@@ -51,13 +52,13 @@ class Vessel {
   /// Which of the goals of kind stitch have what they ask for, as "110".
   std::string made() const {
     std::string text;
-    for (std::size_t g = 0; g < task_.needle->goals.size(); ++g)
-      if (task_.needle->goals[g].kind == NeedleGoal::Kind::stitch) text += order_.made(static_cast<int>(g)) ? '1' : '0';
+    for (std::size_t g = 0; g < goals_.size(); ++g)
+      if (goals_[g].kind == NeedleGoal::Kind::stitch) text += order_.made(static_cast<int>(g)) ? '1' : '0';
     return text;
   }
   int running_goal() const {
-    for (std::size_t g = 0; g < task_.needle->goals.size(); ++g)
-      if (task_.needle->goals[g].stitch.running) return static_cast<int>(g);
+    for (std::size_t g = 0; g < goals_.size(); ++g)
+      if (goals_[g].stitch.running) return static_cast<int>(g);
     return -1;
   }
   const StitchOrder& order() const { return order_; }
@@ -87,7 +88,7 @@ class Vessel {
     for (; left > side(k); ++k) left -= side(k);
     return rim[k];
   }
-  Task task_;
+  std::vector<NeedleGoal> goals_;
   TissueDescription tissue_;
   StitchOrder order_;
   Observation o_;
@@ -140,6 +141,22 @@ TEST(StitchOrder, AStitchBetweenStaysComesTooEarlyAndCountsLater) {
   v.stitch(300.0);
   EXPECT_EQ(v.made(), "1111") << "the early one is one of the three between";
   EXPECT_EQ(v.order().out_of_turn(), 1);
+}
+
+TEST(StitchOrder, StitchesThatWaitAreTakenInAnyOrder) {
+  std::vector<NeedleGoal> goals;
+  for (const double from : {0.0, 90.0, 180.0}) {
+    NeedleGoal g;
+    g.kind = NeedleGoal::Kind::stitch;
+    g.stitch.from = (from - 20.0) * kDegree;
+    g.stitch.span = 40.0 * kDegree;
+    goals.push_back(g);
+  }
+  for (const std::vector<double>& angles : std::vector<std::vector<double>>{{0.0, 90.0, 180.0}, {90.0, 180.0, 0.0}, {180.0, 90.0, 0.0}}) {
+    Vessel v(goals);
+    for (const double a : angles) v.stitch(a);
+    EXPECT_EQ(v.made(), "111") << "begun at " << angles.front();
+  }
 }
 
 TEST(StitchOrder, PosteriorWallFirst) {

@@ -159,6 +159,23 @@ TEST(TaskSession, ScoredTimeStandsStillWhileAnInputIsSilent) {
   EXPECT_FALSE(warns(run.session.status(), "input-lost"));
 }
 
+/// What is tied meanwhile stays in the scene, so its time is told with it.
+TEST(TaskSession, WorkWhileAnInputIsSilentMeetsNoStepAndTakesItsTime) {
+  Tie run("knot-square", {3});
+  const TaskStatus before = run.session.status();
+  run.scene.now().tools[0].input_valid = false;
+  for (int k = 0; k < 2; ++k) run.hold(throws_round_post({3, -3}), 20.0, 30e-3);
+  const TaskStatus silent = run.session.status();
+  EXPECT_TRUE(silent.paused);
+  EXPECT_EQ(silent.step_index, before.step_index);
+  EXPECT_NEAR(silent.elapsed, before.elapsed + 40.0, 0.5);
+  run.scene.now().tools[0].input_valid = true;
+  for (int k = 0; k < 2; ++k) run.hold(throws_round_post({3, -3}), 1.5, 30e-3);
+  run.cut();
+  EXPECT_TRUE(run.session.done());
+  EXPECT_GT(run.session.finish(kHeld).seconds, before.elapsed + 40.0);
+}
+
 TEST(TaskSession, WarnsWhileAVesselsWallIsHeldThroughItsThickness) {
   SceneDescription vessel = knot_scene();
   vessel.tissue.lumen = true;
