@@ -326,6 +326,7 @@ void World::Impl::feel_thread() noexcept {
     state.force[i] = rod.obstacles.bodies[i].force + rod.grasps.tools[i].force;
     state.torque[i] = rod.obstacles.bodies[i].torque + rod.grasps.tools[i].torque;
     const double force = state.force[i].norm();
+    state.thread_pull[i] = std::min(force, most);
     if (force <= most) continue;
     state.force[i] *= most / force;
     state.torque[i] *= most / force;
