@@ -346,14 +346,13 @@ void NeedleTracks::rest_on_surface(VesselWall& wall, const WallState& w, TrackSt
     if (next.found && next.surface == here.surface) s.point.at = next.point;
     return;
   }
-  if (normal < s.point.threshold) return;
+  if (normal < s.point.threshold || s.n == kMaxTracks) return;
   e.say("puncture", normal);
   s.dissipated += 0.5 * normal * normal / under(wall, s.point.at);
   open_track(wall, w, s, angle);
 }
 
 void NeedleTracks::open_track(const VesselWall& wall, const WallState&, TrackState& s, double angle) noexcept {
-  if (s.n == kMaxTracks) return;
   s.open = s.n++;
   NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
   track = {};

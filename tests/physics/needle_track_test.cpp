@@ -34,6 +34,22 @@ TEST(NeedleTrack, PointGoesInAtItsThresholdAndNotBefore) {
   EXPECT_NEAR(rig.tracks().tracks[0].entry_angle, 1.57, 0.02);
 }
 
+/// Where there is no room for another way the point does not go in: it is not told to have, and costs nothing.
+TEST(NeedleTrack, PointThatCannotGoInIsNotToldToHave) {
+  RigOptions o;
+  o.track = plain_track(10e-3, 1e-3, 5.0);
+  TrackRig rig(o);
+  TrackState& s = const_cast<TrackState&>(rig.tracks());
+  s.n = kMaxTracks;
+  for (NeedleTrack& t : s.tracks) t.ended = 1;
+  double most = 0.0;
+  for (int k = 0; k < 60; ++k) most = std::max(most, rig.step(kMove).force);
+  EXPECT_GT(most, 10e-3);
+  EXPECT_EQ(s.n, kMaxTracks);
+  EXPECT_STREQ(rig.last_event(), "");
+  EXPECT_EQ(s.dissipated, 0.0);
+}
+
 TEST(NeedleTrack, FlatNeedleSkidsInsteadOfGoingIn) {
   RigOptions o;
   o.angle = 0.2;  // below the least angle
