@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "world/join_test.h"
@@ -66,6 +67,22 @@ TEST(BloodFlow, DownstreamFirstIsNoted) {
   EXPECT_TRUE(w.observation().tissue.blood.wrong_order);
   steps(w, pressing(0), 0.1);
   EXPECT_LT(w.observation().tissue.blood.pressure[1], 26.0 * kMmHg) << "collaterals";
+}
+
+/// A vein that a scene holds empty by suction (`slack`) and whose clamp comes off: what is lost grows from nothing on.
+TEST(BloodFlow, NoneComesBackIntoAnEmptyVein) {
+  World w(load_model(FILUM_SOURCE_DIR, "anastomosis-vein"));
+  State s = w.state();
+  s.tissue.pressure.fill(-15.0 * kMmHg);
+  w.restore(s);
+  Inputs in;
+  in.tools[0] = {w.model().instrument_start[0], 0.0, 0.0, false, true, 8};
+  double least = 0.0;
+  for (int k = 0; k < 12; ++k) {
+    w.step(in);
+    least = std::min(least, w.observation().tissue.blood.lost);
+  }
+  EXPECT_GE(least, 0.0) << "[m3]";
 }
 
 TEST(BloodFlow, SameAfterRestoreAndWithoutAllClampsOnAsBefore) {
