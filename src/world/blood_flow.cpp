@@ -156,7 +156,12 @@ void BloodFlow::observe(const VesselState& s, BloodObservation& o) noexcept {
   line_.measure(s.wall.x, blood_.viscosity);
   o.least_area = line_.least_area();
   o.lumen_length = line_.length();
-  if (!s.blood.flowing()) return;
+  if (!s.blood.flowing()) {  // what is told may be of a state before
+    o.leaks = o.through = o.empty_from = o.empty_to = 0.0;
+    o.leak.fill(0.0);
+    o.milking = Milking::idle;
+    return;
+  }
   const Balance now = balance(s.blood);
   std::array<LeakSector, kLeakSectors> sectors;
   BloodOptions here = blood_;

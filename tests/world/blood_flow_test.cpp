@@ -98,6 +98,20 @@ TEST(BloodFlow, SameAfterRestoreAndWithoutAllClampsOnAsBefore) {
   EXPECT_GT(with.leak, 100.0 / 60e6);
 }
 
+/// What flows is told of the state that is seen, not of one before.
+TEST(BloodFlow, RestoredWithItsClampsOnNothingFlows) {
+  World w(stumps());
+  const State first = w.state();
+  steps(w, pressing(24), 0.04);
+  const BloodObservation& b = w.observation().tissue.blood;
+  ASSERT_GT(b.leaks, 0.0);
+  w.restore(first);
+  EXPECT_FALSE(b.off[0]);
+  EXPECT_EQ(b.leaks, 0.0);
+  EXPECT_EQ(b.through, 0.0);
+  for (const double q : b.leak) EXPECT_EQ(q, 0.0);
+}
+
 /// Jaws that come down open over the clamp's arms and close.
 TEST(BloodFlow, ForcepsOpenAClamp) {
   World w(stumps());
