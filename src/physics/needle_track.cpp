@@ -19,6 +19,15 @@ constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind 
 
 double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
 
+/// Whether a piece of the thread ends in this stretch of it [m]: where it begins, or where it has parted.
+bool ends_within(const RodState& t, double low, double high) noexcept {
+  double arc = t.arc_start;
+  if (low <= arc) return true;
+  for (int j = 0; j + 1 < t.n && arc < high; arc += t.rest_length[j++])
+    if (t.alive[j] == 0 && arc + t.rest_length[j] > low) return true;
+  return false;
+}
+
 /// What runs through a track has no room to turn back in it: where friction has drawn it farther at one knot than at the next, both hold the place in between
 /// (least squares under an order; pool adjacent violators: Ayer et al., Ann. Math. Stat. 26:641, 1955).
 void keep_order(NeedleTrack& track) noexcept {
@@ -173,15 +182,7 @@ int NeedleTracks::follow(VesselWall& wall, const WallState& w, TrackState& s, co
   for (const Use& u : uses_) take_knot(wall, w, s, u, tether(u), dt);
   for (int i = 0; i < s.n; ++i) tear(wall, w, s, s.tracks[static_cast<std::size_t>(i)], load_[static_cast<std::size_t>(i)], e);
   drop_passed(s, e);
-  if (thread != nullptr) {
-    const double whole = thread_length(*thread);
-    for (int i = 0; i < s.n; ++i) {
-      NeedleTrack& track = s.tracks[static_cast<std::size_t>(i)];
-      if (track.n == 0 || whole + track.knots[0].strand > 0.0) continue;
-      track.n = 0;  // the thread's end has gone through
-      track.ended = 1;
-    }
-  }
+  if (thread != nullptr) drop_ended(s, *thread);
   take_point(wall, w, s, X_WN, on_needle, dt, e);
   return e.n;
 }
@@ -249,6 +250,21 @@ void NeedleTracks::drop_passed(TrackState& s, Events& e) noexcept {
       s.point = {};
       if (i + 1 == s.n) track = {}, --s.n;
     }
+  }
+}
+
+/// Knots that an end of the thread has been drawn through, its own or that of a cut, hold nothing any more: least of all what lies beyond it.
+void NeedleTracks::drop_ended(TrackState& s, const RodState& thread) noexcept {
+  const double whole = thread_length(thread);
+  for (std::size_t k = uses_.size(); k-- > 0;) {  // last first: those behind one that goes move up
+    const Use& u = uses_[k];
+    NeedleTrack& track = s.tracks[static_cast<std::size_t>(u.track)];
+    if (u.track >= s.n || u.knot >= track.n) continue;
+    const auto knot = track.knots.begin() + u.knot;
+    const auto [low, high] = std::minmax(u.before, knot->strand);
+    if (low >= 0.0 || !ends_within(thread, whole + low, whole + high)) continue;
+    std::copy(knot + 1, track.knots.begin() + track.n, knot);
+    if (--track.n == 0) track.ended = 1;
   }
 }
 
@@ -330,14 +346,13 @@ void NeedleTracks::rest_on_surface(VesselWall& wall, const WallState& w, TrackSt
     if (next.found && next.surface == here.surface) s.point.at = next.point;
     return;
   }
-  if (normal < s.point.threshold) return;
+  if (normal < s.point.threshold || s.n == kMaxTracks) return;
   e.say("puncture", normal);
   s.dissipated += 0.5 * normal * normal / under(wall, s.point.at);
   open_track(wall, w, s, angle);
 }
 
 void NeedleTracks::open_track(const VesselWall& wall, const WallState&, TrackState& s, double angle) noexcept {
-  if (s.n == kMaxTracks) return;
   s.open = s.n++;
   NeedleTrack& track = s.tracks[static_cast<std::size_t>(s.open)];
   track = {};

@@ -115,6 +115,7 @@ class NeedleTracks {
   void open_track(const VesselWall& wall, const WallState& w, TrackState& s, double angle) noexcept;
   void lay_knot(const VesselWall& wall, TrackState& s, const WallPoint& at) noexcept;
   void drop_passed(TrackState& s, Events& e) noexcept;
+  void drop_ended(TrackState& s, const RodState& thread) noexcept;
 
   TrackMaterial material_;
   NeedleShape needle_;

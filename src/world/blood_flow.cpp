@@ -140,7 +140,7 @@ void BloodFlow::step(VesselState& s, const std::vector<InstrumentParameters>& to
   const double most = kRise * model_.wall.dt, before = s.pressure[near];
   s.pressure[near] = towards(before, wanted[near], most);
   if (before > 0.9 * wanted[near] || s.pressure[1 - near] > 0.0) s.pressure[1 - near] = towards(s.pressure[1 - near], wanted[1 - near], most);
-  b.lost += now.leak * std::min(1.0, s.pressure[near] / std::max(now.pressure, 1.0)) * model_.wall.dt;
+  b.lost += now.leak * std::clamp(s.pressure[near] / std::max(now.pressure, 1.0), 0.0, 1.0) * model_.wall.dt;  // under suction none comes back
 }
 
 void BloodFlow::observe(const VesselState& s, BloodObservation& o) noexcept {
@@ -156,7 +156,12 @@ void BloodFlow::observe(const VesselState& s, BloodObservation& o) noexcept {
   line_.measure(s.wall.x, blood_.viscosity);
   o.least_area = line_.least_area();
   o.lumen_length = line_.length();
-  if (!s.blood.flowing()) return;
+  if (!s.blood.flowing()) {  // what is told may be of a state before
+    o.leaks = o.through = o.empty_from = o.empty_to = 0.0;
+    o.leak.fill(0.0);
+    o.milking = Milking::idle;
+    return;
+  }
   const Balance now = balance(s.blood);
   std::array<LeakSector, kLeakSectors> sectors;
   BloodOptions here = blood_;

@@ -51,7 +51,7 @@ void observe_tools(const State& s, Observation& o) noexcept {
     tool.grasped_edge = -1;
     for (const GraspPoint& g : s.memory.grasps)
       if (g.tool == static_cast<int>(i)) tool.grasped_edge = locate_arc(s.thread, g.arc).first;
-    tool.thread_force = s.force[i].norm();
+    tool.thread_force = s.thread_pull[i];
   }
 }
 

@@ -26,6 +26,7 @@ struct State {
   RodMemory memory;
   std::vector<InstrumentState> instruments;
   std::vector<Vec3> force, torque;          // [N], [N m], of the scene on each tool in the last step, about its tip
+  std::array<double, 3> thread_pull{};      // [N], of the thread alone; told, not carried on
   std::array<std::int32_t, 3> armed{};      // jaws have been open since they last closed: they may take the thread
   std::array<std::int32_t, 3> valid{};      // what came from each tool's device, an InputState
   std::vector<PelletState> pellets;

@@ -62,6 +62,7 @@ struct World::Impl {
   void move_instruments() noexcept;
   void open_and_close_jaws() noexcept;
   void take_or_cut(int tool) noexcept;
+  void note_cut(double arc) noexcept;
   void ignore_held_thread() noexcept;
   void step_thread() noexcept;
   RodStepSummary step_bare_thread() noexcept;
@@ -268,8 +269,16 @@ void World::Impl::take_or_cut(int i) noexcept {
   if (state.thread.alive[edge] == 0) return;
   state.thread.alive[edge] = 0;
   state.armed[static_cast<std::size_t>(i)] = 0;
-  (arc < arc_on_post(*model, state.thread) ? state.cut_low : state.cut_high) = arc;
+  note_cut(arc);
   event("cut", i, arc, "m");
+}
+
+/// About a post the piece with the knot ends at the nearest cut on either side: what was cut off may be cut again.
+void World::Impl::note_cut(double arc) noexcept {
+  const bool low = arc < arc_on_post(*model, state.thread);
+  double& cut = low ? state.cut_low : state.cut_high;
+  const bool beyond = cut >= 0.0 && (low ? arc < cut : arc > cut);
+  if (!model->description.has_post || !beyond) cut = arc;
 }
 
 void World::Impl::ignore_held_thread() noexcept {
@@ -326,6 +335,7 @@ void World::Impl::feel_thread() noexcept {
     state.force[i] = rod.obstacles.bodies[i].force + rod.grasps.tools[i].force;
     state.torque[i] = rod.obstacles.bodies[i].torque + rod.grasps.tools[i].torque;
     const double force = state.force[i].norm();
+    state.thread_pull[i] = std::min(force, most);
     if (force <= most) continue;
     state.force[i] *= most / force;
     state.torque[i] *= most / force;

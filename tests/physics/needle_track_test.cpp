@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "physics/track_rig.h"
@@ -34,6 +32,22 @@ TEST(NeedleTrack, PointGoesInAtItsThresholdAndNotBefore) {
   EXPECT_LT(rig.event_force(), 14e-3);
   EXPECT_NEAR(rig.tracks().tracks[0].bite_entry, o.bite, 12e-6);
   EXPECT_NEAR(rig.tracks().tracks[0].entry_angle, 1.57, 0.02);
+}
+
+/// Where there is no room for another way the point does not go in: it is not told to have, and costs nothing.
+TEST(NeedleTrack, PointThatCannotGoInIsNotToldToHave) {
+  RigOptions o;
+  o.track = plain_track(10e-3, 1e-3, 5.0);
+  TrackRig rig(o);
+  TrackState& s = const_cast<TrackState&>(rig.tracks());
+  s.n = kMaxTracks;
+  for (NeedleTrack& t : s.tracks) t.ended = 1;
+  double most = 0.0;
+  for (int k = 0; k < 60; ++k) most = std::max(most, rig.step(kMove).force);
+  EXPECT_GT(most, 10e-3);
+  EXPECT_EQ(s.n, kMaxTracks);
+  EXPECT_STREQ(rig.last_event(), "");
+  EXPECT_EQ(s.dissipated, 0.0);
 }
 
 TEST(NeedleTrack, FlatNeedleSkidsInsteadOfGoingIn) {
@@ -327,106 +341,6 @@ TEST(NeedleTrack, NodeRuleOfTheSeedGoesInStairsTheTrackDoesNot) {
   EXPECT_GE(changes, 3) << "the vessel's node goes over from needle node to needle node";
   EXPECT_GT(worst_rule, 0.3 * kSpacing) << "what is in the hole jumps by whole needle edges";
   EXPECT_LT(worst_track, 10e-6) << "the track slides continuously, up to the give of its friction";
-}
-
-/// A thread with a corner, held by one knot of a card.
-struct CornerInTrack {
-  CornerInTrack() : wall(make_card({}), {{"card", 0.5e-3, WallLaw::hooke(1e6, 0.3)}}, {}), tracks(plain_track(5e-3, 1e-3, 5.0), {}, wall), w(wall.first_state()) {
-    Points x(3, 5);
-    for (int i = 0; i < 5; ++i) x.col(i) = i <= 2 ? Vec3(i * kEdge, 0.0, 0.0) : Vec3(2.0 * kEdge, (i - 2) * kEdge, 0.0);
-    thread = RodState::from_nodes(x, 5);
-    on_thread.reserve(1);
-    s.n = 1;
-    s.tracks[0].n = 1;
-    s.tracks[0].knots[0].at.element = 0;
-  }
-  Vec3 along(double arc) {
-    s.tracks[0].knots[0].strand = arc - 4.0 * kEdge;
-    on_thread.clear();
-    tracks.hold(wall, w, s, {}, &thread, on_needle, on_thread);
-    return on_thread.at(0).along;
-  }
-
-  static constexpr double kEdge = 0.1e-3;
-  VesselWall wall;
-  NeedleTracks tracks;
-  WallState w;
-  RodState thread;
-  TrackState s;
-  std::vector<RodTether> on_needle, on_thread;
-};
-
-TEST(NeedleTrack, RingSeesAStrandTurnRoundItsCornersNotLeap) {
-  CornerInTrack c;
-  const double h = CornerInTrack::kEdge;
-  EXPECT_TRUE(c.along(1.5 * h).isApprox(Vec3::UnitX(), 1e-9)) << "in the middle of an edge it runs as the edge does";
-  EXPECT_TRUE(c.along(2.5 * h).isApprox(Vec3::UnitY(), 1e-9));
-  EXPECT_TRUE(c.along(2.0 * h).isApprox(Vec3(1.0, 1.0, 0.0).normalized(), 1e-6));
-  double most = 0.0, turned = 0.0;
-  Vec3 before = c.along(1.4 * h);
-  for (double arc = 1.41 * h; arc < 2.6 * h; arc += 0.01 * h) {
-    const Vec3 now = c.along(arc);
-    EXPECT_NEAR(now.norm(), 1.0, 1e-12);
-    const double angle = std::acos(std::min(1.0, now.dot(before)));
-    most = std::max(most, angle);
-    turned += angle;
-    before = now;
-  }
-  EXPECT_NEAR(turned, 0.5 * std::numbers::pi, 1e-3) << "one way all along";
-  EXPECT_LT(most, 0.03) << "[rad], in 1 um";
-}
-
-TEST(NeedleTrack, RingAtAnEndOrACutSeesTheEdgeItIsOn) {
-  CornerInTrack c;
-  const double h = CornerInTrack::kEdge;
-  EXPECT_TRUE(c.along(0.1 * h).isApprox(Vec3::UnitX(), 1e-9));
-  EXPECT_TRUE(c.along(3.9 * h).isApprox(Vec3::UnitY(), 1e-9));
-  c.thread.alive[2] = 0;
-  EXPECT_TRUE(c.along(1.9 * h).isApprox(Vec3::UnitX(), 1e-9));
-  EXPECT_TRUE(c.along(2.1 * h).isApprox(Vec3::UnitY(), 1e-9));
-}
-
-/// Three knots of one track, through which friction has let the thread slide by so much each.
-struct SlidInTrack : CornerInTrack {
-  SlidInTrack() {
-    on_thread.reserve(3);
-    s.tracks[0].n = 3;
-    for (int k = 0; k < 3; ++k) s.tracks[0].knots[static_cast<std::size_t>(k)] = {{0, Vec3::Zero()}, (k - 3) * kGap, kGap, 0.0};
-  }
-  std::array<double, 3> after(const std::array<double, 3>& slid) {
-    on_thread.clear();
-    tracks.hold(wall, w, s, {}, &thread, on_needle, on_thread);
-    for (std::size_t k = 0; k < 3; ++k) {
-      on_thread.at(k).slid = slid[k];
-      on_thread[k].force = Vec3(0.0, 0.0, 1e-3);
-      limit = on_thread[k].limit;
-    }
-    TrackEvent events[4];
-    tracks.follow(wall, w, s, {}, &thread, 2e-3, on_needle, on_thread, events, 4);
-    return {s.tracks[0].knots[0].strand, s.tracks[0].knots[1].strand, s.tracks[0].knots[2].strand};
-  }
-
-  static constexpr double kGap = 60e-6;
-  double limit = 0.0;
-};
-
-TEST(NeedleTrack, WhatRunsThroughItKeepsItsOrder) {
-  constexpr double g = SlidInTrack::kGap;
-  EXPECT_EQ(SlidInTrack().after({10e-6, -20e-6, -30e-6}), (std::array{-3 * g - 10e-6, -2 * g + 20e-6, -g + 30e-6})) << "in order already: as friction let it";
-  const auto two = SlidInTrack().after({0.0, 50e-6, 190e-6});
-  EXPECT_DOUBLE_EQ(two[0], -3 * g - 20e-6) << "the second and the third would be up to 70 um behind the first: all three in the middle";
-  EXPECT_DOUBLE_EQ(two[1], two[0]);
-  EXPECT_DOUBLE_EQ(two[2], two[0]);
-  const auto last = SlidInTrack().after({0.0, -30e-6, 70e-6});
-  EXPECT_EQ(last[0], -3 * g) << "who is in order stays";
-  EXPECT_DOUBLE_EQ(last[1], -1.5 * g - 20e-6);
-  EXPECT_DOUBLE_EQ(last[2], last[1]);
-}
-
-TEST(NeedleTrack, WearsAndCostsByWhatWasDrawnThroughInTheEnd) {
-  SlidInTrack c;
-  c.after({0.0, -60e-6, 60e-6});  // two change places: both in the middle, by 30 um each
-  EXPECT_NEAR(c.s.dissipated, c.limit * 60e-6, 1e-3 * c.limit * 60e-6);
 }
 
 /// A strand drawn through one point of a soft tube takes the wall along as far as its friction can hold it, and then slides: the wall does not swing.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "world/join_test.h"
@@ -68,6 +69,22 @@ TEST(BloodFlow, DownstreamFirstIsNoted) {
   EXPECT_LT(w.observation().tissue.blood.pressure[1], 26.0 * kMmHg) << "collaterals";
 }
 
+/// A vein that a scene holds empty by suction (`slack`) and whose clamp comes off: what is lost grows from nothing on.
+TEST(BloodFlow, NoneComesBackIntoAnEmptyVein) {
+  World w(load_model(FILUM_SOURCE_DIR, "anastomosis-vein"));
+  State s = w.state();
+  s.tissue.pressure.fill(-15.0 * kMmHg);
+  w.restore(s);
+  Inputs in;
+  in.tools[0] = {w.model().instrument_start[0], 0.0, 0.0, false, true, 8};
+  double least = 0.0;
+  for (int k = 0; k < 12; ++k) {
+    w.step(in);
+    least = std::min(least, w.observation().tissue.blood.lost);
+  }
+  EXPECT_GE(least, 0.0) << "[m3]";
+}
+
 TEST(BloodFlow, SameAfterRestoreAndWithoutAllClampsOnAsBefore) {
   World a(stumps()), b(stumps());
   steps(a, pressing(8), 0.02);
@@ -79,6 +96,20 @@ TEST(BloodFlow, SameAfterRestoreAndWithoutAllClampsOnAsBefore) {
   const JoinTestReport with = join_test(*stumps(), a.state());
   EXPECT_TRUE(with.sound) << "the test at the end is held at its own pressure, whatever is off";
   EXPECT_GT(with.leak, 100.0 / 60e6);
+}
+
+/// What flows is told of the state that is seen, not of one before.
+TEST(BloodFlow, RestoredWithItsClampsOnNothingFlows) {
+  World w(stumps());
+  const State first = w.state();
+  steps(w, pressing(24), 0.04);
+  const BloodObservation& b = w.observation().tissue.blood;
+  ASSERT_GT(b.leaks, 0.0);
+  w.restore(first);
+  EXPECT_FALSE(b.off[0]);
+  EXPECT_EQ(b.leaks, 0.0);
+  EXPECT_EQ(b.through, 0.0);
+  for (const double q : b.leak) EXPECT_EQ(q, 0.0);
 }
 
 /// Jaws that come down open over the clamp's arms and close.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "tests/allocation_count.h"
@@ -210,6 +211,108 @@ TEST(FreshSuture, GoesOnAlikeFromASnapshotAndAllocatesNothing) {
   again.sutures.taken = 3;
   other.restore(again);
   EXPECT_NE(one.state_hash(), other.state_hash()) << "how many are left is part of the state";
+}
+
+/// The upstream stump of an artery. One suture lies tied elsewhere; the next one leads from the lumen out through the wall on top, its short end 0.3 mm inside. Forceps hold it 3 mm
+/// above the wall.
+struct PulledOut {
+  static constexpr int kTied = 10;       // nodes of the first suture
+  static constexpr double kInside = 0.3e-3, kHeld = 3e-3;  // [m]
+
+  explicit PulledOut(bool second) : m(scene("artery-knot", 1)), s(World(m).state()) {
+    find_place();
+    lay_thread();
+    lay_track();
+    hold_thread();
+    if (second) return;
+    RodMemory none;
+    take_out({0, kTied - 1}, s.thread, none);
+    const double start = s.thread.arc_start;
+    s.thread.arc_start = 0.0;
+    for (GraspPoint& g : s.memory.grasps) g.arc -= start;
+  }
+
+  std::shared_ptr<Model> m;
+  State s;
+  int element = -1;
+  Vec3 in, out;  // [m], where it goes through the wall
+
+ private:
+  Vec3 middle(int e, std::size_t from) const {
+    const auto& nodes = m->vessel->mesh.elements[static_cast<std::size_t>(e)];
+    return std::accumulate(nodes.begin() + from, nodes.begin() + from + 4, Vec3(Vec3::Zero()), [&](const Vec3& sum, int n) { return Vec3(sum + 0.25 * s.tissue.wall.x.col(n)); });
+  }
+  double start() const { return arc_of_node(s.thread, kTied); }
+  /// The outermost element on top, a millimetre from the cut edge.
+  void find_place() {
+    const VesselMesh& mesh = m->vessel->mesh;
+    for (int e = 0; e < mesh.n_elements(); ++e) {
+      const Vec3 p = middle(e, 4);
+      if (mesh.part[static_cast<std::size_t>(e)] != 0 || mesh.span[static_cast<std::size_t>(e)][1] < 1.0 || std::abs(p.y() + 0.9e-3) > 0.35e-3) continue;
+      if (element >= 0 && p.z() <= out.z()) continue;
+      element = e;
+      in = middle(e, 0);
+      out = p;
+    }
+  }
+  void lay_thread() {
+    Points x(3, kTied + 45);
+    for (int i = 0; i < x.cols(); ++i) x.col(i) = i < kTied ? Vec3(-8e-3, 6e-3 + 0.5e-3 * i, -2.9e-3) : Vec3(in + (0.3e-3 * (i - kTied) - kInside) * Vec3::UnitZ());
+    s.thread = RodState::from_nodes(x, m->description.capacity);
+    s.thread.alive[kTied - 1] = 0;
+    s.thread.rest_length[kTied - 1] = 1e-3;
+    s.memory.self.clear();
+    s.memory.obstacle.clear();
+    const NeedleShape& n = m->needle->shape;
+    s.needle.X_WN.q = Quat::FromTwoVectors(n.tangent(0.0), Vec3::UnitZ());
+    s.needle.X_WN.p = Vec3(x.col(x.cols() - 1)) - s.needle.X_WN.q * n.point(0.0);
+    s.tissue.tracks.point_before = s.needle.X_WN * n.point(n.length());
+  }
+  void lay_track() {
+    s.tissue.tracks.n = 1;
+    NeedleTrack& t = s.tissue.tracks.tracks[0];
+    t.n = 2;
+    t.out = 1;
+    t.bite_entry = t.bite_exit = 0.4e-3;
+    t.hole = m->needle->shape.wire_radius;
+    const double entry = start() + kInside - arc_of_node(s.thread, s.thread.n - 1);
+    t.knots[0] = {{element, -Vec3::UnitZ()}, entry, 0.07e-3, 0.0};
+    t.knots[1] = {{element, Vec3::UnitZ()}, entry + (out - in).norm(), 0.07e-3, 0.0};
+    t.entry = t.knots[0].at;
+    t.exit = t.knots[1].at;
+  }
+  void hold_thread() {
+    Mat3 r;
+    r << Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX();
+    InstrumentState& f = s.instruments[0];
+    f.X_WT = f.X_WD = {Vec3(out + kHeld * Vec3::UnitZ() - 0.5 * m->instruments[0].pads.length * Vec3::UnitX()), Quat(r)};
+    f.angle = 0.0;
+    f.grip_command = -0.1;
+    f.grip_force = 0.5;
+    s.armed[0] = 0;
+    const double above = (out - in).norm() + kHeld;  // [m], the lumen
+    for (const double g : {above - 0.05e-3, above + 0.05e-3}) s.memory.grasps.push_back({0, start() + kInside + g, f.X_WT.inverse() * Vec3(in + g * Vec3::UnitZ())});
+  }
+};
+
+/// A thread that is pulled right out of the wall is out, whichever suture of the scene it is; the one tied before stays where it is.
+TEST(FreshSuture, TheSecondSutureCanBePulledOut) {
+  for (const bool second : {false, true}) {
+    const PulledOut p(second);
+    World w(p.m);
+    w.restore(p.s);
+    Inputs in;
+    in.tools[0] = {p.s.instruments[0].X_WT, -0.1, 0.0, false, true, 0};
+    double nearest = 1.0;  // [m], of the tied suture to the hole
+    for (int k = 0; k < 700; ++k) {
+      in.tools[0].X_WD.p.z() += k < 500 ? 5e-6 : 0.0;  // 2.5 mm
+      w.step(in);
+      const Observation& o = w.observation();
+      for (int i = 0; second && i <= o.parted[0]; ++i) nearest = std::min(nearest, (Vec3(o.positions.col(i)) - p.out).norm());
+    }
+    EXPECT_EQ(w.observation().tissue.passes[0].state, PassObservation::State::pulled_out) << (second ? "second" : "first");
+    EXPECT_GT(nearest, 5e-3);
+  }
 }
 
 }  // namespace fresh_suture_test

@@ -75,6 +75,7 @@ TEST(Observe, ToolsAsSimulatedAndAsCommanded) {
   in.X_WD.p = Vec3(4, 5, 6);
   in.grip_force = 0.5;
   v.s.force[1] = Vec3(0, 3, 4);
+  v.s.thread_pull[1] = 2.0;
   v.s.valid[1] = 1;
   v.s.memory.grasps.push_back({1, v.s.thread.rest_length.head(5).sum() + 1e-6, Vec3::Zero()});
   v.look();
@@ -84,7 +85,7 @@ TEST(Observe, ToolsAsSimulatedAndAsCommanded) {
   EXPECT_EQ(tool.X_WD.p, Vec3(4, 5, 6));
   EXPECT_EQ(tool.grip_force, 0.5);
   EXPECT_EQ(tool.f_T_W, Vec3(0, 3, 4));
-  EXPECT_DOUBLE_EQ(tool.thread_force, 5.0);
+  EXPECT_DOUBLE_EQ(tool.thread_force, 2.0);
   EXPECT_TRUE(tool.input_valid);
   EXPECT_EQ(tool.grasped_edge, 5);
   EXPECT_EQ(v.o.tools[0].grasped_edge, -1);

@@ -70,6 +70,27 @@ TEST(VesselScene, JawPressesTheCardDownAndFeelsIt) {
   EXPECT_GT(felt, 1e-4);
 }
 
+/// "magnitude of the thread's pull on the jaws" (observation.h): the thread lies centimetres away.
+TEST(VesselScene, JawThatFeelsTheCardIsNotToldOfAPullOfTheThread) {
+  World w(scene());
+  Inputs in;
+  ToolInput& t = in.tools[0];
+  t.valid = true;
+  t.grip_angle = 0.0;
+  double nearest = 1.0, told = 0.0, felt = 0.0;
+  for (int k = 0; k < 900; ++k) {
+    t.X_WD.p = Vec3(0.0, 1.5e-3, 1.5e-3 - std::min(k, 750) * 2e-6);
+    w.step(in);
+    const Observation& o = w.observation();
+    for (int i = 0; i < o.n_nodes; ++i) nearest = std::min(nearest, (o.positions.col(i) - o.tools[0].X_WT.p).norm());
+    told = std::max(told, o.tools[0].thread_force);
+    felt = std::max(felt, o.tools[0].f_T_W.norm());
+  }
+  EXPECT_GT(felt, 1e-4);
+  EXPECT_GT(nearest, 2e-3);
+  EXPECT_LT(told, 1e-5) << "the thread is " << 1e3 * nearest << " mm away";
+}
+
 /// At half a metre a second a step takes a jaw 1 mm on: through the card and out, if nothing held it back.
 TEST(VesselScene, FastJawsDoNotPassThroughTheCard) {
   for (const double speed : {0.05, 0.2, 0.5}) {

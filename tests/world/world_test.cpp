@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "tests/allocation_count.h"
 #include "world/model.h"
@@ -262,6 +263,42 @@ EXPECT_EQ(pull.parted_edges(), 1);
   for (int k = 0; k < 250; ++k) pull.step(apart);
   EXPECT_EQ(pull.breaks, 1);
   EXPECT_LT(pull.force, 0.05 * strength) << "a parted thread carries nothing";
+}
+
+/// Scissors that close on the thread at this place of it [m].
+void cut_at(World& w, double arc) {
+  const Model& m = w.model();
+  const auto scissors = static_cast<std::size_t>(std::ranges::find(m.instruments, "scissors", &InstrumentParameters::kind) - m.instruments.begin());
+  State s = w.state();
+  const auto [edge, f] = locate_arc(s.thread, arc);
+  const Vec3 a = s.thread.x.col(edge), b = s.thread.x.col(edge + 1), along = (b - a).normalized();
+  const Vec3 up = (Vec3::UnitZ() - along.z() * along).normalized();
+  Mat3 r;
+  r << along.cross(up), along, up;
+  InstrumentState& tool = s.instruments[scissors];
+  tool.X_WT = tool.X_WD = {Vec3((1.0 - f) * a + f * b - 0.5 * m.instruments[scissors].pads.length * up), Quat(r)};
+  tool.v = tool.w = Vec3::Zero();
+  tool.angle = 0.02;
+  s.armed[scissors] = 1;
+  w.restore(s);
+  Inputs in;
+  in.tools[scissors] = {tool.X_WT, -0.05, 0.0, false, true, 0};
+  const int before = w.observation().n_parted;
+  for (int k = 0; k < 400 && w.observation().n_parted == before; ++k) w.step(in);
+  EXPECT_EQ(w.observation().n_parted, before + 1) << 1e3 * arc << " mm";
+}
+
+TEST(World, ALooseEndThatIsCutAgainIsNoPartOfTheKnot) {
+  for (const auto& [first, then] : {std::pair{2.5e-3, 4e-3}, std::pair{4e-3, 2.5e-3}}) {
+    World w(scene());
+    for (int k = 0; k < 200; ++k) w.step(Inputs{});
+    cut_at(w, first);
+    cut_at(w, then);
+    const Observation& o = w.observation();
+    ASSERT_EQ(o.n_parted, 2);
+    EXPECT_EQ(o.cut_edge_low, o.parted[1]) << "cut at " << 1e3 * first << ", then " << 1e3 * then << " mm";
+    EXPECT_EQ(o.cut_edge_high, -1);
+  }
 }
 
 TEST(World, StepOfOursAllocatesNothing) {
