@@ -79,7 +79,8 @@ void accept_geometry(const RodGeometry& g, const Points& x, const Eigen::VectorX
   s.x.leftCols(s.n) = x.leftCols(s.n);
   s.theta.head(s.n) = theta.head(s.n);
   s.d1.leftCols(s.n) = g.d1.leftCols(s.n);
-  s.ref_twist.head(s.n) = g.ref_twist.head(s.n);
+  s.ref_twist.segment(1, s.n - 2) = g.ref_twist.segment(1, s.n - 2);
+  s.ref_twist[0] = s.ref_twist[s.n - 1] = 0.0;  // lanes of nodes worked out together reach beyond the inner ones
 }
 
 void take_set(const RodMaterial& m, RodState& s, const RodGeometry& g) noexcept {

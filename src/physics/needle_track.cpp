@@ -370,7 +370,13 @@ void NeedleTracks::lay_knot(const VesselWall& wall, TrackState& s, const WallPoi
   const double depth = wall.depth_at(at);
   track.shallow = std::min(track.shallow, depth);
   track.deep = std::max(track.deep, depth);
-  if (track.n == kTrackKnots) return;
+  if (track.n == kTrackKnots) {  // of a longer way the last one moves on and stands for the rest
+    TrackKnot& last = track.knots.back();
+    last.at = at;
+    last.span += needle_.length() - last.strand;
+    last.strand = needle_.length();
+    return;
+  }
   TrackKnot knot;
   knot.at = at;
   knot.strand = needle_.length();

@@ -135,6 +135,17 @@ TEST(ElasticRod, StiffnessIsTheDerivativeOfTheForce) {
   }
 }
 
+/// Nodes are worked out four at a time: of what lies beyond the inner ones nothing is taken over.
+TEST(ElasticRod, FirstAndLastNodeHaveNoReferenceTwist) {
+  for (int n = 4; n < 9; ++n) {
+    Sample c = crooked_rod(1, n);
+    c.s.ref_twist[0] = c.s.ref_twist[n - 1] = 0.7;
+    settle(c);
+    EXPECT_EQ(c.s.ref_twist[0], 0.0);
+    EXPECT_EQ(c.s.ref_twist[n - 1], 0.0) << n << " nodes";
+  }
+}
+
 TEST(ElasticRod, RestShapeAndRigidMotionGiveNoForce) {
   Points nodes(3, 20);
   for (int i = 0; i < 20; ++i) nodes.col(i) = Vec3(std::cos(0.3 * i), std::sin(0.3 * i), 0.1 * i);

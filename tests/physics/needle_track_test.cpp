@@ -99,6 +99,22 @@ TEST(NeedleTrack, ComesOutOnTheFarSideAndHoldsTheNeedle) {
   EXPECT_NEAR(t.knots[0].strand - t.knots[static_cast<std::size_t>(t.n - 1)].strand, -o.thickness, 0.05 * o.thickness) << "the track keeps the tissue's length";
 }
 
+/// A longer way than its knots reach: the last one stands for the rest of it and is where the needle came out.
+TEST(NeedleTrack, LastKnotOfALongWayIsItsExit) {
+  RigOptions o;
+  o.thickness = 1e-3;
+  o.track = plain_track(5e-3, 1e-3, 1.0);
+  TrackRig rig(o);
+  ASSERT_TRUE(drive_until(rig, "needle-out", 3e-3));
+  const NeedleTrack& t = rig.tracks().tracks[0];
+  ASSERT_EQ(t.n, kTrackKnots);
+  const double through = t.knots[kTrackKnots - 1].strand - t.knots[0].strand;
+  EXPECT_NEAR(through, o.thickness, 0.05 * o.thickness);
+  double spans = 0.0;
+  for (const TrackKnot& k : t.knots) spans += k.span;
+  EXPECT_NEAR(spans, through, 20e-6) << "up to the give of their friction";
+}
+
 TEST(NeedleTrack, SmallBiteTearsAtItsLoadAndLetsGo) {
   RigOptions o;
   o.thickness = 0.3e-3;

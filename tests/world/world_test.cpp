@@ -131,6 +131,29 @@ TEST(World, RestoredSnapshotGoesOnAsIfNeverInterrupted) {
   EXPECT_EQ(used.array_hashes(), whole.array_hashes());
 }
 
+/// Same state, same inputs, same next state, whatever the world was busy with before: here a longer thread, in each octant about the end of the first.
+TEST(World, RestoredSnapshotGoesOnAlikeWhateverWasBefore) {
+  World used(scene());
+  const State first = used.state();
+  const int last = first.thread.n - 1, more = scene()->description.capacity;
+  for (int octant = 0; octant < 8; ++octant) {
+    const Vec3 to((octant & 1) != 0 ? 1e-3 : -1e-3, (octant & 2) != 0 ? 1e-3 : -1e-3, (octant & 4) != 0 ? 1e-3 : -1e-3);
+    State longer = first;
+    Points x(3, more);
+    for (int i = 0; i < more; ++i) x.col(i) = first.thread.x.col(last) + (i - last) * 0.3 * to;
+    longer.thread = RodState::from_nodes(x, more);
+    used.restore(longer);
+    used.step(Inputs{});
+    used.restore(first);
+    World fresh(scene());
+    for (int k = 0; k < 3; ++k) {
+      used.step(Inputs{});
+      fresh.step(Inputs{});
+      EXPECT_EQ(used.array_hashes(), fresh.array_hashes()) << "octant " << octant << ", step " << k;
+    }
+  }
+}
+
 TEST(World, InputThatIsNotANumberIsIgnored) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   World w(scene());
