@@ -74,8 +74,9 @@ it("a result tells the time with pauses where events or curves go beyond the tas
 
 it("a session that is running is listed as that, without a replay", () => {
   const cut = { ...info, finished: false, passed: null, total: null, seconds: 0 } as SessionInfo;
-  const cells = (state: string, session: string) => [...sessionTable([cut], { session: { state, session } } as unknown as App).querySelectorAll("tbody td")].slice(3).map((one) => one.textContent);
+  const cells = (state: string, session: string, knot_test: number | null = null) => [...sessionTable([cut], { session: { state, session, knot_test } } as unknown as App).querySelectorAll("tbody td")].slice(3).map((one) => one.textContent);
   expect(cells("running", "s1")).toEqual(["–", "–", "running", ""]);
+  expect(cells("ended", "s1", 0.2)).toEqual(["–", "–", "running", ""]); // its knot is being pulled
   for (const [state, session] of [["running", "s2"], ["ended", "s1"]]) expect(cells(state, session)).toEqual(["0:00.0", "–", "cut short", "Replay"]);
 });
 

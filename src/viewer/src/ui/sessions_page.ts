@@ -14,9 +14,9 @@ export function madeUnder(one: { input: string; exam: boolean; stiffness?: numbe
   return words.filter((word) => word !== "").join(", ");
 }
 
-/// Identifier of the session that is being recorded, or null.
-export function runningNow(app: App): string | null {
-  return app.session?.state === "running" ? app.session.session : null;
+/// Identifier of the session that is being recorded, or null: its knot may still be pulled after its end.
+export function runningNow({ session }: App): string | null {
+  return session && (session.state === "running" || (session.state === "ended" && session.knot_test !== null)) ? session.session : null;
 }
 
 export class SessionsPage implements Page {
