@@ -83,3 +83,10 @@ describe("a page that is loaded again", () => {
     expect(page.element.querySelector(".over a")).toBe(link);
   });
 });
+
+it.each([[false, 5], [true, 2]])("in an exam (%s) only the alarm tells of pressure", (exam, n) => {
+  open();
+  const warnings = ["pressure-alarm", "input-lost", "pressure-yellow", "dose-orange", "release-reminder"].map((code) => ({ level: "danger", text: code, code }));
+  app.hear(state("loading", "s1", { exam }), scene, state("running", "s1", { exam }), { ...frame(), task: { ...frame().task, warnings } } as unknown as ReturnType<typeof frame>);
+  expect([...page.element.querySelectorAll<HTMLElement>(".warning")].map((one) => one.dataset.code)).toEqual(warnings.slice(0, n).map((one) => one.code));
+});

@@ -14,6 +14,7 @@ import { TissuePanel } from "./tissue_panel";
 
 const kPanelsEvery = 60; // [ms]
 const kEventsShown = 5;
+const kHelp = /^(pressure-(?!alarm)|dose-|release-|perfusion-)/; // codes of warnings that an exam does without, as blind steps do
 
 export class LivePage implements Page {
   readonly title = "Task";
@@ -182,7 +183,8 @@ export class LivePage implements Page {
       this.showHand();
     }
     const now = performance.now();
-    this.warnings.show(frame.task?.warnings ?? []);
+    const warnings = frame.task?.warnings ?? [];
+    this.warnings.show(this.app.session?.exam ? warnings.filter((one) => !kHelp.test(one.code)) : warnings);
     if (now - this.lastPanels < kPanelsEvery) return;
     this.lastPanels = now;
     if (this.over.querySelector(".loading")) clear(this.over);
