@@ -61,6 +61,14 @@ TEST(WildHands, ToolsDoNotPressStrandsThroughEachOther) {
   EXPECT_LT(run.deepest, 0.5);
 }
 
+/// The same without a needle (else: 0.87 into each other).
+TEST(WildHands, ToolsDoNotPressABareThreadThroughItself) {
+  World world(load_model(FILUM_SOURCE_DIR, "knot-two-forceps"));
+  const WildRun run = run_wild(world, world.state(), 331, 300);
+  EXPECT_EQ(run.fault, "");
+  EXPECT_LT(run.deepest, 0.5);
+}
+
 /// The thread's edges are numbered anew as they are halved and joined; the gap that is told is that of the edges the contacts knew.
 TEST(WildHands, StrandsAreNotSaidToBeNearerThanAnyTwoEdgesAre) {
   World world(load_model(FILUM_SOURCE_DIR, "knot-throw"));

@@ -14,16 +14,31 @@
 namespace filum {
 namespace needle_track_thread_test {
 
-/// A thread with a corner, held by one knot of a card.
-struct CornerInTrack {
-  CornerInTrack() : wall(make_card({}), {{"card", 0.5e-3, WallLaw::hooke(1e6, 0.3)}}, {}), tracks(plain_track(5e-3, 1e-3, 5.0), {}, wall), w(wall.first_state()) {
-    Points x(3, 5);
-    for (int i = 0; i < 5; ++i) x.col(i) = i <= 2 ? Vec3(i * kEdge, 0.0, 0.0) : Vec3(2.0 * kEdge, (i - 2) * kEdge, 0.0);
-    thread = RodState::from_nodes(x, 5);
+/// A thread held by one knot of a card.
+struct HeldByOneKnot {
+  explicit HeldByOneKnot(const Points& x) : wall(make_card({}), {{"card", 0.5e-3, WallLaw::hooke(1e6, 0.3)}}, {}), tracks(plain_track(5e-3, 1e-3, 5.0), {}, wall), w(wall.first_state()) {
+    thread = RodState::from_nodes(x, static_cast<int>(x.cols()));
     on_thread.reserve(1);
     s.n = 1;
     s.tracks[0].n = 1;
     s.tracks[0].knots[0].at.element = 0;
+  }
+
+  VesselWall wall;
+  NeedleTracks tracks;
+  WallState w;
+  RodState thread;
+  TrackState s;
+  std::vector<RodTether> on_needle, on_thread;
+};
+
+/// One with a corner.
+struct CornerInTrack : HeldByOneKnot {
+  CornerInTrack() : HeldByOneKnot(corner()) {}
+  static Points corner() {
+    Points x(3, 5);
+    for (int i = 0; i < 5; ++i) x.col(i) = i <= 2 ? Vec3(i * kEdge, 0.0, 0.0) : Vec3(2.0 * kEdge, (i - 2) * kEdge, 0.0);
+    return x;
   }
   Vec3 along(double arc) {
     s.tracks[0].knots[0].strand = arc - 4.0 * kEdge;
@@ -33,12 +48,6 @@ struct CornerInTrack {
   }
 
   static constexpr double kEdge = 0.1e-3;
-  VesselWall wall;
-  NeedleTracks tracks;
-  WallState w;
-  RodState thread;
-  TrackState s;
-  std::vector<RodTether> on_needle, on_thread;
 };
 
 TEST(NeedleTrack, RingSeesAStrandTurnRoundItsCornersNotLeap) {
@@ -115,15 +124,12 @@ TEST(NeedleTrack, WearsAndCostsByWhatWasDrawnThroughInTheEnd) {
 }
 
 /// A straight thread of 20 edges through one knot of a card.
-struct DrawnThroughTrack {
-  DrawnThroughTrack() : wall(make_card({}), {{"card", 0.5e-3, WallLaw::hooke(1e6, 0.3)}}, {}), tracks(plain_track(5e-3, 1e-3, 5.0), {}, wall), w(wall.first_state()) {
+struct DrawnThroughTrack : HeldByOneKnot {
+  DrawnThroughTrack() : HeldByOneKnot(straight()) { s.tracks[0].out = 1; }
+  static Points straight() {
     Points x(3, 21);
     for (int i = 0; i < 21; ++i) x.col(i) = Vec3(i * 0.5e-3, 0.0, 0.0);
-    thread = RodState::from_nodes(x, 21);
-    on_thread.reserve(1);
-    s.n = 1;
-    s.tracks[0].n = s.tracks[0].out = 1;
-    s.tracks[0].knots[0].at.element = 0;
+    return x;
   }
   double whole() const { return arc_of_node(thread, thread.n - 1); }
   double arc() const { return whole() + s.tracks[0].knots[0].strand; }
@@ -139,13 +145,6 @@ struct DrawnThroughTrack {
     }
     return s.tracks[0].ended == 1;
   }
-
-  VesselWall wall;
-  NeedleTracks tracks;
-  WallState w;
-  RodState thread;
-  TrackState s;
-  std::vector<RodTether> on_needle, on_thread;
 };
 
 TEST(NeedleTrack, AThreadDrawnOutOfItLeavesItAtItsEndAndNotBefore) {
