@@ -133,3 +133,13 @@ it("tasks that differ in what is done have pictures that differ", () => {
   const drawn = tasks.map((task) => taskPicture(task, "").outerHTML.replace(/field\d+/g, ""));
   expect(new Set(drawn).size).toBe(tasks.length);
 });
+
+it("tells what tissue and needle do to a tip where there is tissue, else the thread's pull alone", () => {
+  const told = (of: typeof scene) => {
+    const panel = new ForcePanel(of), frame = frameAt(0, 1, 10);
+    panel.show({ ...frame, tools: frame.tools.map((one) => ({ ...one, force: [0.003, 0, 0.004], thread_force: 0.002 })) }, null);
+    return [...panel.element.querySelectorAll<HTMLElement>('[aria-valuetext^="Pull"]')].map((one) => one.getAttribute("aria-valuenow"));
+  };
+  expect(told(scene)[0]).toBe("2.0");
+  expect(told({ ...scene, tissue: { name: "card" } } as unknown as typeof scene)[0]).toBe("5.0");
+});

@@ -60,16 +60,18 @@ export class ForcePanel {
   readonly element = h("section", { class: "panel forces", "aria-label": "Forces" });
   private readonly thread: Meter;
   private readonly tools: { grip: Meter; pull: Meter; state: HTMLElement; box: HTMLElement }[];
+  private readonly onTip: boolean;
   private readonly strength: number;
 
   constructor(scene: Scene) {
     this.strength = scene.thread_strength;
+    this.onTip = !!scene.tissue; // of tissue and needle as well as of the thread
     this.thread = new Meter("Tension", scene.thread_strength > 0 ? 1.1 * scene.thread_strength : null,
       `breaks at ${milliNewton(scene.thread_strength)}`);
     const thread = !kLaboratory.includes(scene.task);
     if (thread) this.element.append(h("h2", {}, "Thread"), h("p", { class: "quiet" }, `${scene.suture} · ${(2e6 * scene.thread_radius).toFixed(0)} µm · breaks at ${milliNewton(scene.thread_strength)}`), this.thread.element);
     this.tools = scene.tools.map((tool, index) => {
-      const grip = new Meter("Grip", null, null), pull = scene.tissue ? new Meter("Pull on the tip", null, null, 0.005) : new Meter("Pull of the thread", null, null);
+      const grip = new Meter("Grip", null, null), pull = this.onTip ? new Meter("Pull on the tip", null, null, 0.005) : new Meter("Pull of the thread", null, null);
       const state = h("span", { class: "tag" }, "");
       const box = h("div", { class: "tool" }, h("h2", {}, h("span", { class: `bands b${index}`, "aria-hidden": "true" }), toolTitle(tool.name), state), ...(tool.kind === "scissors" ? [] : thread ? [grip.element, pull.element] : [grip.element]));
       this.element.append(box);
@@ -86,7 +88,7 @@ export class ForcePanel {
       const tool = frame.tools[i];
       if (!tool) return;
       parts.grip.show(tool.grip_force, "ok", "");
-      parts.pull.show(tool.thread_force, "ok", "");
+      parts.pull.show(this.onTip ? Math.hypot(...tool.force) : tool.thread_force, "ok", "");
       setText(parts.state, !tool.input_valid ? "no input" : tool.grasped >= 0 ? "holding" : "");
       parts.state.classList.toggle("alarm", !tool.input_valid);
       parts.box.classList.toggle("active", active === i);
