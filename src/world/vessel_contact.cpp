@@ -4,6 +4,8 @@
 #include <cmath>
 #include <span>
 
+#include "world/track_reach.h"
+
 namespace filum {
 namespace {
 
@@ -20,36 +22,6 @@ bool parted(const RodState& t, double arc) noexcept {
   const auto [edge, f] = locate_arc(t, arc);
   return t.alive[edge] == 0 && f > 1e-6 && f < 1.0 - 1e-6;
 }
-
-/// Stretches of the thread that tracks hold, [m] of its arc.
-class InTracks {
- public:
-  InTracks(const TrackState& tracks, double whole) noexcept {
-    for (int i = 0; i < tracks.n; ++i) {
-      const NeedleTrack& t = tracks.tracks[static_cast<std::size_t>(i)];
-      if (t.n == 0) continue;
-      const double a = whole + t.knots[0].strand, b = whole + t.knots[static_cast<std::size_t>(t.n - 1)].strand;
-      from_[n_] = std::min(a, b) - kTrackReach;
-      to_[n_++] = std::max(a, b) + kTrackReach;
-    }
-  }
-  bool hold(double arc) const noexcept {
-    for (std::size_t i = 0; i < n_; ++i)
-      if (arc > from_[i] && arc < to_[i]) return true;
-    return false;
-  }
-  /// All of n samples along an edge that begins at `arc`.
-  bool hold_all(double arc, double length, int n) const noexcept {
-    for (int k = 0; k < n; ++k)
-      if (!hold(sample(arc, length, k, n))) return false;
-    return true;
-  }
-  static double sample(double arc, double length, int k, int n) noexcept { return arc + static_cast<double>(k) / n * length; }
-
- private:
-  std::array<double, kMaxTracks> from_, to_;
-  std::size_t n_ = 0;
-};
 
 bool near_one_of(std::span<const SurfaceTouch> touches, double arc) noexcept {
   return std::any_of(touches.begin(), touches.end(), [&](const SurfaceTouch& t) { return std::abs(t.arc - arc) < kOneTouch; });
@@ -102,8 +74,7 @@ double VesselContact::sinks(const VesselWall& wall, const WallState& w, const To
 
 void VesselContact::follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const RodState& thread,
                            const std::vector<RodTether>& on_thread) noexcept {
-  const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
-  const InTracks in_tracks(tracks, whole);
+  const TrackReaches in_tracks(tracks, thread);
   int kept = 0;
   n_come_out_ = 0;
   for (int k = 0; k < s.n; ++k) {
@@ -161,8 +132,7 @@ WallCrossing VesselContact::passed(const VesselWall& wall, const WallState& w, c
 template <class Look>
 void VesselContact::for_free_samples(const VesselWall& wall, const TouchState& s, const TrackState& tracks, const RodState& thread, double beside,
                                      const Look& look) const noexcept {
-  const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
-  const InTracks in_tracks(tracks, whole);
+  const TrackReaches in_tracks(tracks, thread);
   double arc = thread.arc_start;
   for (int i = 0; i + 1 < thread.n && s.n < kMostTouches; arc += thread.rest_length[i++]) {
     const int n = thread.alive[i] == 0 ? 1 : static_cast<int>(std::ceil(thread.rest_length[i] / kSpacing));
@@ -170,7 +140,7 @@ void VesselContact::for_free_samples(const VesselWall& wall, const TouchState& s
     const Vec3 a = before_.col(i), b = before_.col(i + 1), to_a = thread.x.col(i), to_b = thread.x.col(i + 1), around = Vec3::Constant(beside);
     if (!wall.near(a.cwiseMin(b).cwiseMin(to_a).cwiseMin(to_b) - around, a.cwiseMax(b).cwiseMax(to_a).cwiseMax(to_b) + around)) continue;
     for (int k = 0; k < n; ++k) {
-      const double f = static_cast<double>(k) / n, at = InTracks::sample(arc, thread.rest_length[i], k, n);
+      const double f = static_cast<double>(k) / n, at = TrackReaches::sample(arc, thread.rest_length[i], k, n);
       if (!in_tracks.hold(at) && !spoken_for(s, at)) look(at, (1.0 - f) * a + f * b, (1.0 - f) * to_a + f * to_b);  // asked first: the wall's search costs most
     }
   }

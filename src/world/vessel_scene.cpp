@@ -57,7 +57,7 @@ std::uint64_t hash_blood(const BloodState& b, std::uint64_t h) noexcept {
 }  // namespace
 
 VesselScene::VesselScene(const VesselModel& model, const NeedleShape& needle, int thread_capacity)
-    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), wire_(needle) {
+    : model_(model), wall_(model.mesh, model.layers, model.wall), tracks_(model.track, needle, wall_), contact_(thread_capacity), stray_(model.thickness), wire_(needle) {
   if (model.lumen) blood_ = std::make_unique<BloodFlow>(model_);
 }
 
@@ -205,6 +205,7 @@ void VesselScene::step(VesselState& s, const Pose& X_WN, bool held, const RodSta
   tracks_.carry_point(wall_, s.wall, s.tracks);
   wire_.feel(wall_, s.wire);
   contact_.overtake(wall_, s.wall, s.touches, s.tracks, thread);
+  stray_.step(wall_, s.wall, s.tracks, thread, s.strays, s.touches);
   wire_.overtake(wall_, s.wall, s.wire, s.tracks, X_WN);
 }
 

@@ -8,6 +8,7 @@
 #include "physics/wall_grasp.h"
 #include "world/observation.h"
 #include "world/blood_flow.h"
+#include "world/stray_thread.h"
 #include "world/vessel_contact.h"
 #include "world/vessel_model.h"
 #include "world/wire_contact.h"
@@ -59,6 +60,7 @@ class VesselScene {
   VesselWall wall_;
   NeedleTracks tracks_;
   VesselContact contact_;
+  StrayThread stray_;
   WireContact wire_;
   std::unique_ptr<BloodFlow> blood_;  // of two stumps in clamps
 };

@@ -26,6 +26,18 @@ struct TouchState {
   std::array<SurfaceTouch, kMostTouches> touches;
 };
 
+/// Thread that lay deep in the tissue when it was last looked for (stray_thread.h). Part of the state.
+struct StrayPlace {
+  double strand = 0.0;         // [m], behind the swage
+  Vec3 x = Vec3::Zero();       // [m]
+};
+inline constexpr int kMostStrays = 16;
+struct StrayState {
+  std::int32_t unseen = 0;     // steps since
+  std::int32_t n = 0;
+  std::array<StrayPlace, kMostStrays> places;
+};
+
 /// The double clamp as the trainee's buttons have left it. Part of the state.
 struct ClampState {
   double gap = 0.0;            // [m], between the cut edges as long as they are free
@@ -52,6 +64,7 @@ struct VesselState {
   WallState wall;
   TrackState tracks;
   TouchState touches, wire;            // of the thread, of the needle
+  StrayState strays;
   ClampState clamp;
   BloodState blood;
   std::array<WallGrip, 3> grips;       // of each tool
