@@ -115,10 +115,16 @@ bool StrayThread::lies_deep(const Scene& c, double from, double to) noexcept {
     q.depth = 0.0;
     if (c.wall.nearest(c.w, q.x, deep_).found) continue;  // asked first: to look farther costs more
     const WallCrossing near = c.wall.nearest(c.w, q.x, kReach);
-    if (near.found) q.depth = -near.fraction;
+    if (near.found && near.fraction < 0.0 && amid(c, q.x, near)) q.depth = -near.fraction;
     deepest = std::max(deepest, q.depth);
   }
   return deepest > deep_;
+}
+
+/// Does no more of the tissue lie beyond it, along the line from its nearest side, than makes that its share of the thickness? Not so where it cuts across a rim.
+bool StrayThread::amid(const Scene& c, const Vec3& x, const WallCrossing& near) noexcept {
+  const double beyond = (1.0 / kDeepShare - 1.0) * -near.fraction;
+  return c.wall.crossing(c.w, x, x - beyond * near.away).found;
 }
 
 /// Was it there in the last look, by the thread or by the place?

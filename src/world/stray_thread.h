@@ -2,6 +2,7 @@
 // Thread that has come to lie deep in the tissue where no track leads and no touch draws it out, as when it is dragged out of the reach of a track or is left by one that tears out:
 // it is given touches (surface_touch.h) that lead it out again.
 //
+// Deep is what has no less than kDeepShare of the tissue's thickness on either side, there and as first made: what is pressed into a surface or cuts across a rim has not.
 // A stretch lies in the tissue from where the thread crosses the surface inwards, or leaves a track's reach within it, to where it comes out or into another reach. What is deep in it and was
 // so in the look before gets touches. All of it goes out on one side: where a touch already draws some of it; else where the mouth is that it comes from; else where the thread comes
 // out next to its deepest place. Touches in it that push the other way end. Thread that is pulled harder than touches bear (90 mN/mm) stays, and they with it.
@@ -47,6 +48,7 @@ class StrayThread {
   void pass(const Scene& c, int edge, double arc, double from, double to, TouchState& s) noexcept;
   void leave(const Scene& c, const End& end, TouchState& s) noexcept;
   bool lies_deep(const Scene& c, double from, double to) noexcept;
+  static bool amid(const Scene& c, const Vec3& x, const WallCrossing& near) noexcept;
   bool was_seen(const Scene& c, const Sample& q) const noexcept;
   bool drawn(const Sample& q, const TouchState& s) const noexcept;
   Vec3 way_out(const End& from, const End& to, const TouchState& s) const noexcept;

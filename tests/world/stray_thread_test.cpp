@@ -87,6 +87,15 @@ TEST(StrayThread, WhatLiesOnTheSurfaceIsLeftAlone) {
   EXPECT_EQ(t.lead_out(straight({-2e-3, kOuter + 20e-6, 1.5e-3}, {2e-3, kOuter + 20e-6, 1.5e-3}, 21)), 0);
 }
 
+/// Beside the cut edge, which is nearest: behind it lies the length of the tube.
+TEST(StrayThread, WhatCutsAcrossARimIsLeftAlone) {
+  for (const double from_edge : {32e-6, 300e-6}) {
+    Tube t;
+    const double z = 3e-3 - from_edge, y = kOuter - 33e-6;
+    EXPECT_EQ(t.lead_out(straight({-2e-3, y, z}, {2e-3, y, z}, 21)) > 0, from_edge > 0.1e-3) << from_edge;
+  }
+}
+
 /// Its stretch has no other end: the mouth alone tells where it came from.
 TEST(StrayThread, WhatIsDraggedOutOfATrackIsDrawnOutAtItsMouth) {
   Tube t;
