@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "collision/segment_distance.h"
+#include "evidence/sewn_bench.h"
 #include "world/state.h"
 #include "world/task_folder.h"
 
@@ -49,6 +50,15 @@ TEST(WildHands, EveryOtherTask) {
     ++tried;
   }
   EXPECT_GT(tried, 15);
+}
+
+/// Thread is dragged along out of a track's reach within the wall, at 0.1 m/s, and led out of it (else: still there in step 221).
+TEST(WildHands, ThreadThatStraysOutOfATrackIsLedOut) {
+  const auto [model, sewn] = sewn_stumps(load_model(FILUM_SOURCE_DIR, "anastomosis-8"), 1);
+  World world(model);
+  const WildRun run = run_wild(world, sewn, 6, 240);
+  EXPECT_EQ(run.fault, "");
+  EXPECT_GT(run.buried, 1) << "nothing strayed";
 }
 
 /// Thread is caught between two tools that hands go on driving into each other: held where they were, they press it no further (else: through itself in step 505).
