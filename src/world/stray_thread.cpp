@@ -10,14 +10,13 @@ namespace filum {
 namespace {
 
 constexpr int kEvery = 5;                        // steps between two looks: 10 ms
-constexpr double kBeside = kTrackReach + 0.1e-3;  // [m], of a track: a tight stitch that is pulled lies a little farther in
+constexpr double kBeside = kTrackReach + 0.1e-3; // [m], of a track: a tight stitch that is pulled lies a little farther in
 constexpr double kSwage = 0.3e-3;                // [m], of thread that goes where the needle takes it
 constexpr double kSamePlace = 0.2e-3;            // [m], by which a place may have gone between two looks
 constexpr double kSpacing = 50e-6;               // [m], of samples along a stretch; less where less counts as deep, or the middle of a wall would be missed
 constexpr double kReach = 0.3e-3;                // [m], in which the nearest surface is looked for
 constexpr double kDrawn = 0.12e-3;               // [m], of thread on either side of a touch that comes along with it
 constexpr double kShare = 0.5;                   // of a place's depth that the touch has which draws it
-constexpr double kOneTouch = 35e-6;              // [m], of thread that one touch stands for, either way
 constexpr double kJustPast = 1e-9;               // [1], of an edge, after a crossing
 
 Vec3 out_of(const VesselWall& wall, const WallState& w, const WallPoint& mouth) noexcept { return wall.nearest(w, wall.position(w, mouth), kReach).normal; }

@@ -281,6 +281,11 @@ std::uint64_t hash_vessel(const VesselState& s) noexcept {
   if (s.blood.flowing()) h = hash_blood(s.blood, h);  // else as it was before there was any
   for (std::size_t i = 0; i < s.grips.size(); ++i)
     if (s.grips[i].n > 0) h = hash_grip(s.grips[i], h + i);  // likewise
+  for (int k = 0; k < s.strays.n; ++k) {  // likewise; when they are looked for again goes by the number of steps
+    const StrayPlace& place = s.strays.places[static_cast<std::size_t>(k)];
+    const std::array<double, 4> row = {place.strand, place.x.x(), place.x.y(), place.x.z()};
+    h = hash_bytes(row.data(), sizeof(row), h);
+  }
   const std::array<double, 9> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,
                                      t.point_before.x(), t.point_before.y(), t.point_before.z(), s.pressure[0], s.pressure[1]};
   return hash_point(t.point.at, hash_bytes(row.data(), sizeof(row), h));
