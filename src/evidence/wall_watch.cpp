@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "physics/rod_pieces.h"
 #include "physics/thread_grasp.h"
 #include "world/needle_model.h"
 #include "world/vessel_model.h"
@@ -46,7 +47,7 @@ BuriedStrand WallWatch::longest() const noexcept {
 }
 
 void WallWatch::find_tracks(const State& s) {
-  whole_ = s.thread.n > 1 ? s.thread.arc_start + s.thread.rest_length.head(s.thread.n - 1).sum() : 0.0;
+  whole_ = arc_of_end(s.thread);
   tracks_.clear();
   const TrackState& t = s.tissue.tracks;
   for (int i = 0; i < t.n; ++i) {

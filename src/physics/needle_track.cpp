@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "physics/rod_pieces.h"
 #include "physics/thread_grasp.h"
 
 namespace filum {
@@ -16,8 +17,6 @@ constexpr double kBeside = 0.1e-3;    // [m], a free point's reach: no wall move
 constexpr double kLift = 1e-6;        // [m], by which a point that is let go stands off the surface at least
 constexpr double kStraightFrom = 2.0;  // of `stiffens`
 constexpr double kDrawnBack = 20e-6;  // [m], by which the point must be behind a knot to have left it
-
-double thread_length(const RodState& t) noexcept { return t.arc_start + t.rest_length.head(t.n - 1).sum(); }
 
 /// Whether a piece of the thread ends in this stretch of it [m]: where it begins, or where it has parted.
 bool ends_within(const RodState& t, double low, double high) noexcept {
@@ -123,7 +122,7 @@ void NeedleTracks::draw_aside(RodTether& t, const Vec3& x) const noexcept {
 void NeedleTracks::hold(const VesselWall& wall, const WallState& w, const TrackState& s, const Pose& X_WN, const RodState* thread,
                         std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept {
   uses_.clear();
-  const double whole = thread != nullptr ? thread_length(*thread) : 0.0;
+  const double whole = thread != nullptr ? arc_of_end(*thread) : 0.0;
   for (int i = 0; i < s.n; ++i) {
     const NeedleTrack& track = s.tracks[static_cast<std::size_t>(i)];
     for (int k = 0; k < track.n; ++k) {
@@ -255,7 +254,7 @@ void NeedleTracks::drop_passed(TrackState& s, Events& e) noexcept {
 
 /// Knots that an end of the thread has been drawn through, its own or that of a cut, hold nothing any more: least of all what lies beyond it.
 void NeedleTracks::drop_ended(TrackState& s, const RodState& thread) noexcept {
-  const double whole = thread_length(thread);
+  const double whole = arc_of_end(thread);
   for (std::size_t k = uses_.size(); k-- > 0;) {  // last first: those behind one that goes move up
     const Use& u = uses_[k];
     NeedleTrack& track = s.tracks[static_cast<std::size_t>(u.track)];

@@ -54,6 +54,8 @@ RodPiece piece_to(const RodState& s, int last) noexcept {
 
 double arc_of_node(const RodState& s, int node) noexcept { return s.arc_start + s.rest_length.head(node).sum(); }
 
+double arc_of_end(const RodState& s) noexcept { return s.n > 0 ? arc_of_node(s, s.n - 1) : 0.0; }
+
 ArcChange take_out(const RodPiece& p, RodState& s, RodMemory& memory) noexcept {
   const int n = p.last + 1 - p.first;
   const bool last = p.last + 1 == s.n;

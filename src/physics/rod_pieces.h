@@ -17,6 +17,8 @@ RodPiece piece_to(const RodState& s, int last) noexcept;
 
 /// [m], material coordinate of a node.
 double arc_of_node(const RodState& s, int node) noexcept;
+/// [m], of the last node, where a needle is swaged; 0 where there is no thread.
+double arc_of_end(const RodState& s) noexcept;
 
 /// How material coordinates change when a piece goes. What lay in it has none any more.
 struct ArcChange {

@@ -13,8 +13,6 @@ namespace {
 constexpr std::int32_t kFresh = 32;  // button (world/inputs.h)
 constexpr double kClear = 0.1e-3;    // [m], between what is there and the new thread
 
-double whole_length(const RodState& t) noexcept { return t.n > 0 ? arc_of_node(t, t.n - 1) : 0.0; }
-
 bool holds(const RodState& t, const RodPiece& p, double arc) noexcept { return arc >= arc_of_node(t, p.first) && arc <= arc_of_node(t, p.last); }
 
 bool held(const State& s, const RodPiece& p) noexcept {
@@ -23,7 +21,7 @@ bool held(const State& s, const RodPiece& p) noexcept {
 
 /// Whether one of its ways through the tissue holds this piece, or the needle.
 bool in_tissue(const State& s, const RodPiece& p, bool needle) noexcept {
-  const double whole = whole_length(s.thread);
+  const double whole = arc_of_end(s.thread);
   for (int i = 0; i < s.tissue.tracks.n; ++i) {
     const NeedleTrack& t = s.tissue.tracks.tracks[static_cast<std::size_t>(i)];
     for (int k = 0; k < t.n; ++k) {
@@ -36,7 +34,7 @@ bool in_tissue(const State& s, const RodPiece& p, bool needle) noexcept {
 
 /// Everything that names a place of the thread by its material coordinate.
 void follow(State& s, const ArcChange& c, double whole_before) noexcept {
-  const double whole = whole_length(s.thread);
+  const double whole = arc_of_end(s.thread);
   for (int i = 0; i < s.tissue.tracks.n; ++i) {
     NeedleTrack& t = s.tissue.tracks.tracks[static_cast<std::size_t>(i)];
     for (int k = 0; k < t.n; ++k) {
@@ -113,7 +111,7 @@ void FreshSuture::clear(State& s) const noexcept {
   for (bool strand = true; p.last >= 0; strand = false) {
     const int before = p.first - 1;
     if (strand || (!held(s, p) && !in_tissue(s, p, false))) {
-      const double whole = whole_length(s.thread);
+      const double whole = arc_of_end(s.thread);
       const ArcChange c = take_out(p, s.thread, s.memory);
       follow(s, c, whole);
     }
@@ -123,7 +121,7 @@ void FreshSuture::clear(State& s) const noexcept {
 }
 
 void FreshSuture::lay(State& s) const noexcept {
-  const double whole = whole_length(s.thread);
+  const double whole = arc_of_end(s.thread);
   join_on(thread_, s.thread);
   follow(s, {}, whole);
   const NeedleShape& n = model_.needle->shape;

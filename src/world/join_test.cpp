@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "physics/rod_pieces.h"
 #include "physics/vessel_edge.h"
 #include "physics/vessel_flow.h"
 #include "world/vessel_model.h"
@@ -184,7 +185,7 @@ double thread_in_lumen(const Model& model, const State& state) {
   const RodState& t = state.thread;
   const VesselMesh& mesh = model.vessel->mesh;
   const std::array<std::vector<LumenRing>, 2> rings = {lumen_rings(mesh, state.tissue.wall.x, 0), lumen_rings(mesh, state.tissue.wall.x, 1)};
-  const double whole = t.arc_start + t.rest_length.head(t.n - 1).sum();
+  const double whole = arc_of_end(t);
   const std::vector<Stretch> free = between_bites(state.tissue.tracks, t, whole);
   double inside = 0.0, arc = t.arc_start;
   for (int i = 0; i + 1 < t.n; arc += t.rest_length[i++]) {

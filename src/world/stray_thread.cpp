@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/stage_clock.h"
+#include "physics/rod_pieces.h"
 #include "physics/thread_grasp.h"
 
 namespace filum {
@@ -28,7 +29,7 @@ int StrayThread::step(const VesselWall& wall, const WallState& w, const TrackSta
   if (++strays.unseen < kEvery) return 0;
   const StageScope stage("stray thread");
   now_.n = 0;
-  look({wall, w, thread, strays, thread.arc_start + thread.rest_length.head(thread.n - 1).sum()}, tracks, s);
+  look({wall, w, thread, strays, arc_of_end(thread)}, tracks, s);
   strays = now_;
   return given_;
 }

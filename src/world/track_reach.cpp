@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "physics/rod_pieces.h"
+
 namespace filum {
 
 TrackReaches::TrackReaches(const TrackState& tracks, const RodState& thread, double beside) noexcept {
-  const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
+  const double whole = arc_of_end(thread);
   for (int i = 0; i < tracks.n; ++i) {
     const NeedleTrack& t = tracks.tracks[static_cast<std::size_t>(i)];
     if (t.n == 0) continue;

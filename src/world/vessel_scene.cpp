@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "physics/rod_pieces.h"
 #include "world/observe.h"
 
 namespace filum {
@@ -221,7 +222,7 @@ void VesselScene::observe(const VesselState& s, const RodState& thread, Observat
     if (grip.n > 0) t.grips[i] = {true, grip.through != 0, grip.pull, model_.mesh.part[static_cast<std::size_t>(grip.places[0].at[0].element)]};
   }
   if (blood_) blood_->observe(s, t.blood);
-  const double whole = thread.arc_start + thread.rest_length.head(thread.n - 1).sum();
+  const double whole = arc_of_end(thread);
   for (int k = 0; k < s.tracks.n; ++k) {
     const NeedleTrack& track = s.tracks.tracks[static_cast<std::size_t>(k)];
     PassObservation& p = t.passes[static_cast<std::size_t>(k)];

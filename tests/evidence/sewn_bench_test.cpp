@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "physics/rod_pieces.h"
 #include "physics/thread_grasp.h"
 #include "world/needle_model.h"
 #include "world/vessel_model.h"
@@ -39,7 +40,7 @@ struct Overtightened {
   Vec3 strand(std::size_t which) const {
     const TrackState& tracks = world->state().tissue.tracks;
     const RodState& t = world->state().thread;
-    const double whole = t.arc_start + t.rest_length.head(t.n - 1).sum();
+    const double whole = arc_of_end(t);
     return at_arc(t, which == 0 ? whole + tracks.tracks[0].knots[0].strand - 2.5e-3 : whole + tracks.tracks[1].knots[2].strand + 2e-3);
   }
 

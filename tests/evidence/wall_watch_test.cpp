@@ -8,6 +8,7 @@
 
 #include "evidence/sewn_bench.h"
 #include "evidence/wild_hands.h"
+#include "physics/rod_pieces.h"
 #include "physics/thread_grasp.h"
 #include "world/needle_model.h"
 #include "world/vessel_model.h"
@@ -27,7 +28,7 @@ struct Sewn {
     for (int k = 0; k < 10; ++k) world.step(Inputs{});
     state = world.state();
   }
-  double whole() const { return state.thread.arc_start + state.thread.rest_length.head(state.thread.n - 1).sum(); }
+  double whole() const { return arc_of_end(state.thread); }
 };
 
 /// A card beside needle and thread, and the middle of an element in the midst of a flap.

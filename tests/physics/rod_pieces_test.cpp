@@ -91,6 +91,8 @@ TEST(RodPieces, TheFirstOneGoesAndArcsStay) {
   EXPECT_EQ(c.by, 0.0);
   EXPECT_NEAR(arc_of_node(s, 0), arc_of_node(before, 8), 1e-15);
   EXPECT_NEAR(arc_of_node(s, 21), arc_of_node(before, 29), 1e-15);
+  EXPECT_EQ(arc_of_end(s), arc_of_node(s, 21)) << "what went at the front counts";
+  EXPECT_EQ(arc_of_end(RodState{}), 0.0) << "no thread";
   EXPECT_EQ(s.alive[11], 0);
 }
 
