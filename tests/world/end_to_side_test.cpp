@@ -39,6 +39,20 @@ TEST(EndToSide, SceneHasBothEdgesOfACutOffTheAxis) {
   EXPECT_GT(worst, 0.4);
 }
 
+/// One suture for each of the eight stitches, and room for what a tied one keeps of the rod.
+TEST(EndToSide, HasAFreshSutureForEachOfItsEightStitches) {
+  EXPECT_EQ(scene()->sutures, 8);
+  EXPECT_GE(scene()->description.capacity, 8 * 105 + 200) << "a stitch tied with two throws keeps some 70 nodes, a third makes it half as many more; one that is wound takes up to 200";
+  World w(scene());
+  Inputs in;
+  in.tools[0] = {scene()->instrument_start[0], 0.2, 0.0, false, true, 32};
+  w.step(in);
+  const Observation& o = w.observation();
+  ASSERT_EQ(o.n_events, 1);
+  EXPECT_STREQ(o.events[0].name, "suture-fresh");
+  EXPECT_EQ(o.needle.sutures_left, 6);
+}
+
 TEST(EndToSide, StandsStillAndStaysSound) {
   World w(scene());
   const Points first = w.observation().tissue.positions;
