@@ -216,11 +216,18 @@ void Trainer::carry_out(const ClientMessage& message) {
     if (const auto* seek = std::get_if<SeekMessage>(&message)) replay_->seek(seek->time);
   } catch (const InputError& error) {
     server_->publish_error({"bad-input", error.file + ": " + error.field + ": found " + error.value + ".", "Expected " + error.expected + "."});
-    if (!session_ && !replay_) publish_state("idle");
+    rest();
   } catch (const std::exception& error) {
     server_->publish_error({"failed", error.what(), "Nothing recorded is lost. Try again; filum doctor tells more."});
-    if (!session_ && !replay_) publish_state("idle");
+    rest();
   }
+}
+
+/// After a refusal: what did not begin holds nothing.
+void Trainer::rest() {
+  if (session_) return;
+  lab_.port_in_use(false);
+  if (!replay_) publish_state("idle");
 }
 
 /// An exam shows the tissue as it is.
@@ -300,12 +307,14 @@ void Trainer::start_session(const StartMessage& start, Setup setup, InputDevices
   server_->publish_scene(session_->scene(), guides);
   session_->start();
   set_pointer(session_.get());
+  view_.pointer = session_->pointer() != nullptr;
   publish_state("running");
 }
 
 /// Shows the result at once; what the pull test of its knot says comes later, while the trainee may go on.
 void Trainer::end_session() {
   set_pointer(nullptr);
+  view_.pointer = false;
   finish_pull();
   lab_.port_in_use(false);
   view_.recording = false;

@@ -69,6 +69,7 @@ class Trainer final : public ServerHost {
   std::optional<std::string> result_of(const std::string& session);
   Conditions conditions_of(const std::string& session);
   void carry_out(const ClientMessage& message);
+  void rest();
   void look_after();
   void start_task(const StartMessage& start);
   void start_session(const StartMessage& start, Setup setup, InputDevices inputs);

@@ -196,6 +196,7 @@ std::string session_state_message(const TrainerView& trainer, int controller, bo
                   {"state", trainer.state},
                   {"task", trainer.task},
                   {"input", optional_text(trainer.input)},
+                  {"pointer", trainer.pointer},
                   {"controller", controller},
                   {"in_control", in_control},
                   {"clients", clients},

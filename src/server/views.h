@@ -84,6 +84,7 @@ struct TrainerView {
   std::string warning;         // for people, empty: all well
   double knot_test = -1.0;     // share of the pull test of the last knot that is done; below 0: none runs
   bool exam = false;           // no guides, hints or overlays
+  bool pointer = false;        // the browser in control moves instruments: by pointer alone, or beside devices that do not know where they are
 };
 
 struct ReplayView {

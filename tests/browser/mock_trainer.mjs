@@ -76,7 +76,7 @@ export function startMock({ port = 0, duration = 8 } = {}) {
 
 function sessionState(state) {
   const running = state.running ? "running" : state.replay ? "replay" : state.ended ? "ended" : "idle";
-  return { type: "session_state", state: running, task: state.running ? "knot-square" : "", input: state.running ? state.input : null, controller: 1, in_control: true, clients: state.sockets.size,
+  return { type: "session_state", state: running, task: state.running ? "knot-square" : "", input: state.running ? state.input : null, pointer: Boolean(state.running) && state.input === "pointer", controller: 1, in_control: true, clients: state.sockets.size,
     recording: state.running, exam: false, session: state.running || state.ended ? "s1" : state.replay, warning: "", knot_test: null };
 }
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "altered_recording.h"
 #include "started_trainer.h"
+#include "tests/devices/pty.h"
 #include "tests/session/disk_limit.h"
 
 namespace filum {
@@ -83,6 +84,46 @@ TEST(Trainer, ThePointerMovesTheToolOnlyWhileItsBrowserIsThere) {
     watcher.say(R"({"type":"ack","frame":)" + frame.at("id").dump() + "}");
     if (frame.at("devices").at(0).at("state") == "lost") break;  // else the test ends by its time
   }
+}
+
+/// A handle that does not know where it is: the pointer moves the instrument, and the page is told so.
+TEST(Trainer, BesideForcepsThePointerMovesTheTool) {
+  const synthetic::Folder folder;
+  const Pty pty(folder.file("port"));
+  TrainerOptions options;
+  options.serial_port = pty.path();
+  const StartedTrainer trainer(options);
+  Client browser(trainer.port());
+  browser.say(R"({"type":"start","task":"tip-hold","input":"demo"})");
+  EXPECT_FALSE(hear_state(browser, "running").at("pointer").get<bool>());
+  browser.say(R"({"type":"start","task":"tip-hold","input":"device"})");
+  EXPECT_TRUE(hear_state(browser, "running").at("pointer").get<bool>());
+  json device;
+  for (int k = 0; k < 200 && (device.is_null() || device.at("received") == 0); ++k) {
+    browser.say(R"({"type":"pointer","tool":0,"time":)" + std::to_string(0.01 * k) + R"(,"position":[0,0,0.01],"quaternion":[1,0,0,0],"grip":0.2,"buttons":0})");
+    const json frame = browser.hear("frame");
+    device = frame.at("devices").at(1);
+    browser.say(R"({"type":"ack","frame":)" + frame.at("id").dump() + "}");
+  }
+  EXPECT_GT(device.at("received").get<int>(), 0) << device;
+  browser.say(R"({"type":"stop"})");
+  EXPECT_FALSE(hear_state(browser, "ended").at("pointer").get<bool>());
+}
+
+TEST(Trainer, AStartThatIsRefusedLeavesTheForcepsFreeForACalibration) {
+  const synthetic::Folder folder;
+  Pty pty(folder.file("port"));
+  TrainerOptions options;
+  options.serial_port = pty.path();
+  StartedTrainer trainer(options);
+  Client browser(trainer.port());
+  pty.unplug();
+  browser.say(R"({"type":"start","task":"tip-hold","input":"device"})");
+  browser.hear("error");
+  hear_state(browser, "idle");
+  pty.plug();
+  const json answer = json::parse(trainer->post("/api/calibration/start", "{}").value());
+  EXPECT_FALSE(answer.contains("refused")) << answer;
 }
 
 TEST(Trainer, WithoutAStoreItTrainsAndWarns) {

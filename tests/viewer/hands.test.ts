@@ -1,9 +1,9 @@
 import { Hands, kClutch, kCut, multiply, uprightness } from "@viewer/input/hands";
 import type { Quaternion, ToolState, Vec3 } from "@viewer/messages";
 
-const tool = (x: number, angle: number): ToolState => {
+const tool = (x: number, angle: number, squeeze = 0): ToolState => {
   const pose = { position: [x, 0, 0.005] as Vec3, quaternion: [1, 0, 0, 0] as Quaternion };
-  return { pose, device_pose: pose, grip_angle: angle, grip_force: 0, thread_force: 0, force: [0, 0, 0], grasped: -1, input_valid: true };
+  return { pose, device_pose: pose, grip_angle: angle, grip_force: squeeze, thread_force: 0, force: [0, 0, 0], grasped: -1, input_valid: true };
 };
 
 function adopted(): Hands {
@@ -17,7 +17,31 @@ describe("hands", () => {
     const hands = adopted();
     expect(hands.message(0, 1).position).toEqual([-0.003, 0, 0.005]);
     expect(hands.message(0, 1).grip).toBeCloseTo(0);
-    expect(hands.message(1, 1).grip).toBeCloseTo(0.96);
+    expect(hands.message(1, 1).grip).toBeCloseTo(0.576);
+  });
+
+  it("keep jaws as wide and squeezing as hard as they are", () => {
+    const told = (grip: number, widest: number): number => grip < 0.6 ? widest * (1 - grip / 0.6) : -0.25 * (grip - 0.6) / 0.4; // the trainer's grip_angle_of
+    for (const [angle, squeeze] of [[0.5, 0], [0.35, 0], [0.02, 0], [0, 0], [0, 1], [0, 3], [0.1, 0.5], [0.02, 0.6]]) {
+      const hands = new Hands();
+      hands.adopt([tool(0, angle, squeeze)], [0.5]);
+      hands.advance(0);
+      const command = told(hands.message(0, 1).grip, 0.5);
+      expect(command).toBeCloseTo(angle - squeeze / 12); // 3 N at 0.25 rad
+    }
+  });
+
+  it("a button that is held while the hand is changed is let go", () => {
+    const hands = new Hands();
+    hands.adopt([tool(-0.003, 0.1), tool(0.003, 0.1)], [0.5, 0.5]);
+    hands.message(1, 0);
+    hands.press(1, kCut, true);
+    hands.message(1, 0.1);
+    hands.message(1, 0.2);
+    hands.switchHand();
+    hands.press(hands.active, kCut, false);
+    expect(hands.message(1, 0.3).buttons).toBe(0);
+    expect(hands.message(0, 0.3).buttons).toBe(0);
   });
 
   it("only the moved hand moves, the other keeps pose and grip", () => {

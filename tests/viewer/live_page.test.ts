@@ -31,6 +31,18 @@ describe("Escape in the field", () => {
   });
 });
 
+it("moves the instruments with attached forceps that do not know where they are, and says so; others it leaves alone", () => {
+  open();
+  const hand = (pointer: boolean): string => {
+    app.hear(state("loading", "s1", { input: "device", pointer }), scene, state("running", "s1", { input: "device", pointer }), frame());
+    return page.element.textContent!;
+  };
+  expect(hand(true)).toContain("the pointer moves them · Active hand");
+  const alone = hand(false);
+  expect(alone).toContain("Attached instruments");
+  expect(alone).not.toContain("Active hand");
+});
+
 describe("without a task", () => {
   it("shows nothing of a replay that was left", () => {
     app.hear(state("replay", "s1"), scene, resultFor("s1"));

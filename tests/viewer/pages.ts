@@ -16,7 +16,7 @@ export function fakeView() {
 }
 
 export const state = (name: SessionState["state"], session: string | null, more: Partial<SessionState> = {}): SessionState => ({
-  type: "session_state", state: name, task: "knot-square", input: "pointer", controller: 1, in_control: true, clients: 1, recording: false, exam: false, session, warning: "", knot_test: null, ...more });
+  type: "session_state", state: name, task: "knot-square", input: "pointer", pointer: true, controller: 1, in_control: true, clients: 1, recording: false, exam: false, session, warning: "", knot_test: null, ...more });
 export const scene = kScene as unknown as Scene;
 export const replayOf = (session: string, time = 0) => ({ type: "replay_state" as const, session, time, duration: 30, ready: 30, playing: false });
 export const resultFor = (session: string, more: Partial<Result> = {}) => ({ ...(resultOf(session, 30) as unknown as Result), ...more });

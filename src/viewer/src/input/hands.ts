@@ -16,6 +16,8 @@ export interface Hand {
 }
 
 export const kClutch = 1, kCut = 2, kNext = 4, kUpstreamOff = 8, kDownstreamOff = 16, kFresh = 32;
+const kClosedGrip = 0.6, kHardestTurn = 0.25; // as the trainer reads a grip: the jaws meet there; [rad], by which 1 turns them on
+const kSqueezeStiffness = 12; // [N/rad], of jaws that something stops
 const kTap = 0.06; // [s], for which a tap is told
 const kCloseRate = 2.2, kOpenRate = 4.5; // [1/s]
 const kReach = 0.06; // [m], hands stay within this distance of the middle of the scene
@@ -45,6 +47,13 @@ function unit(q: Quaternion): Quaternion {
   return [q[0] / length, q[1] / length, q[2] / length, q[3] / length];
 }
 
+/// The grip that keeps opening and squeeze as they are: jaws that squeeze are told to close further than what they hold lets them.
+function gripOf(tool: ToolState, widest: number): number {
+  const told = tool.grip_angle - tool.grip_force / kSqueezeStiffness; // [rad]
+  const grip = told < 0 ? kClosedGrip - (1 - kClosedGrip) * told / kHardestTurn : widest > 0 ? kClosedGrip * (1 - told / widest) : 0;
+  return Math.min(1, Math.max(0, grip));
+}
+
 export class Hands {
   readonly hands: Hand[] = [];
   active = 0;
@@ -58,11 +67,10 @@ export class Hands {
     this.hands.length = 0;
     this.spare = tools.map((_, i) => spare[i] ?? false);
     tools.forEach((tool, i) => {
-      const open = openings[i] > 0 ? Math.min(1, tool.grip_angle / openings[i]) : 1;
-      const grip = Math.max(0, 1 - open);
+      const grip = gripOf(tool, openings[i]);
       this.hands.push({
         position: [...tool.device_pose.position], quaternion: [...tool.device_pose.quaternion], grip,
-        closing: false, latched: grip > 0.5, buttons: 0, tapped: 0, since: -1,
+        closing: false, latched: grip > kClosedGrip / 2, buttons: 0, tapped: 0, since: -1,
       });
     });
     this.centre = [0, 1, 2].map((k) => this.hands.reduce((sum, hand) => sum + hand.position[k], 0) / Math.max(1, this.hands.length)) as Vec3;
@@ -89,7 +97,7 @@ export class Hands {
 
   private activate(index: number): void {
     const left = this.hands[this.active];
-    if (left) { left.latched = left.grip > 0.05; left.closing = false; }
+    if (left) { left.latched = left.grip > 0.05; left.closing = false; left.buttons = 0; } // what is let go from now on is the other hand's
     this.active = index;
   }
 

@@ -103,7 +103,7 @@ export class LivePage implements Page {
 
   private get steering(): boolean {
     const session = this.app.session;
-    return session !== null && session.state === "running" && session.input === "pointer" && session.in_control;
+    return session !== null && session.state === "running" && session.pointer && session.in_control;
   }
 
   /// A task is what this page shows; scene and result of a replay are none.
@@ -202,8 +202,8 @@ export class LivePage implements Page {
     if (session?.state === "running") {
       if (!session.in_control) text = session.controller > 0 ? "Watching: another browser is in control" : "Watching";
       else if (session.input === "demo") text = "Demonstration";
-      else if (session.input === "device") text = "Attached instruments";
-      else if (scene) text = `Active hand: ${toolTitle(scene.tools[this.pointer.hands.active]?.name ?? "")} (Tab changes${scene.tools.some((tool) => tool.kind === "scissors") ? ", X: scissors" : ""})`;
+      else if (session.input === "device" && !session.pointer) text = "Attached instruments";
+      else if (scene) text = (session.input === "device" ? "Attached instruments grip, the pointer moves them · " : "") + `Active hand: ${toolTitle(scene.tools[this.pointer.hands.active]?.name ?? "")} (Tab changes${scene.tools.some((tool) => tool.kind === "scissors") ? ", X: scissors" : ""})`;
     }
     setText(this.hand, session?.state === "running" && session.exam ? `Exam · ${text}` : text);
   }
