@@ -102,7 +102,7 @@ void add_run(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("run", "Run a task without a browser and print its score");
   command->add_option("task", o->task, "Name of the task, e.g. knot-square (see filum list)")->required();
   command->add_option("--input", o->input, "demo, serial:PATH, haptic:[ADDRESS:]PORT, igtl:[ADDRESS:]PORT, several joined by +, a demonstration (*.yaml) or a recording")->capture_default_str();
-  command->add_option("--model", o->model, "Suture, vessel or brain file to use instead of the scene's, or a model.yaml of filum reconcile");
+  command->add_option("--model", o->model, "Suture, vessel or brain to use instead of the scene's: a file, a name of filum list, or a model.yaml of filum reconcile");
   command->add_option("--stiffness", o->stiffness, "Of the brain, times the model's: 0.1 to 10");
   command->add_option("--forceps", o->forceps, "Calibration of the forceps on serial:PATH (from filum calibrate forceps)");
   command->add_option("--record", o->record, "Store the session in this new file");

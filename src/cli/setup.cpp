@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.h"
+#include "base/file_kind.h"
 #include "base/yaml_file.h"
 #include "training/needle_task.h"
 #include "world/brain_model.h"
@@ -60,7 +61,17 @@ std::vector<std::string> task_names(const std::string& root) {
   return names;
 }
 
-Setup load_setup(const std::string& root, const std::string& task, const std::string& model_file, double stiffness) {
+namespace {
+
+/// A model is a file or, as `filum list` prints them, a name below models/.
+std::string model_path(const std::string& root, const std::string& model) {
+  const std::string named = root + "/models/" + model + ".yaml";
+  return !model.empty() && !is_there(model) && is_there(named) ? named : model;
+}
+
+}  // namespace
+
+Setup load_setup(const std::string& root, const std::string& task, const std::string& model, double stiffness) {
   const std::vector<std::string> names = task_names(root);
   if (names.empty()) throw InputError("--root", "curricula", root, "a folder with models/ and curricula/");
   if (std::find(names.begin(), names.end(), task) == names.end()) {
@@ -68,6 +79,7 @@ Setup load_setup(const std::string& root, const std::string& task, const std::st
     for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
     throw InputError("curricula", "task", task, "one of: " + all);
   }
+  const std::string model_file = model_path(root, model);
   Setup setup{root, model_file, turned(load_model(root, task, model_file), stiffness), load_task(task_file(root, task)), stiffness};
   check_tools(task_file(root, task), setup.task, *setup.model);
   return setup;

@@ -19,8 +19,8 @@ struct Setup {
   double stiffness = 1.0;  // of a brain, times the model's: the surgeon's dial
 };
 
-/// Throws InputError; an unknown task is answered with the names of those there are, a task whose steps want a tool that its scene lacks is refused.
-Setup load_setup(const std::string& root, const std::string& task, const std::string& model_file = "", double stiffness = 1.0);
+/// `model`: a file, or its name below models/ without .yaml. Throws InputError; an unknown task is answered with the names of those there are, a task whose steps want a tool that its scene lacks is refused.
+Setup load_setup(const std::string& root, const std::string& task, const std::string& model = "", double stiffness = 1.0);
 
 /// Names of the folders below curricula/ that hold a task, in order.
 std::vector<std::string> task_names(const std::string& root);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "base/error.h"
 #include "world/describe.h"
 #include "world/model_file.h"
 #include "world/needle_model.h"
@@ -19,6 +20,7 @@ constexpr Range kTissueLength{1e-5, 0.1};      // [m]
 constexpr std::size_t kMostTurns = 16;
 constexpr double kMostGap = 0.05;              // [m]
 constexpr double kMostDamping = 1e5;           // [1/s]
+constexpr double kArteryPressure = 100.0 * 133.322387415;  // [Pa], that the numbers of a Circulation belong to
 constexpr Range kBloodPressure{100.0, 1e5};    // [Pa], 750 mmHg
 constexpr Range kFlow{1e-12, 1e-3};            // [m3/s], to a litre a second
 constexpr double kMostPuncture = 10.0;         // [N]
@@ -91,7 +93,15 @@ void read_flaps(const YamlNode& node, VesselModel& v) {
   v.wall.damping = node.quantity("damping", "1/s", Range::between(0.0, kMostDamping));
 }
 
-/// What the clamps keep out; what is not said is an artery's.
+/// The blood of a preset's own vessel: an artery's pressures, all in proportion to its own.
+void scale_blood(double pressure, Circulation& c) {
+  const double share = pressure / kArteryPressure;
+  c.pressure *= share;
+  c.back *= share;
+  c.opening *= share;
+}
+
+/// What the clamps keep out; flows that are not said are an artery's.
 void read_blood(const YamlNode& node, VesselModel& v) {
   Circulation& c = v.circulation;
   c.pressure = node.quantity("pressure", "mmHg", kBloodPressure);
@@ -137,6 +147,7 @@ void read_stumps(const std::string& root, const YamlNode& node, const std::strin
   const std::string named = "models/vessel/" + node.text("preset") + ".yaml", file = instead.empty() ? named : instead;
   v.name = instead.empty() ? node.text("preset") : std::filesystem::path(instead).stem().string();
   VesselPreset preset = load_vessel(instead.empty() ? root + "/" + named : instead);
+  if (!preset.tube && !instead.empty()) throw InputError(instead, "kind", "card", "a vessel that is a tube");
   if (!preset.tube) node.refuse("preset", "a vessel that is a tube");
   m.sources.push_back(file);
   TubeShape& s = preset.shape;
@@ -155,6 +166,7 @@ void read_stumps(const std::string& root, const YamlNode& node, const std::strin
   Mat3 bar;
   bar << -Vec3::UnitX(), Vec3::UnitZ(), Vec3::UnitY();
   v.clamp.X_WB = {read_point(node, "centre"), Quat(bar)};
+  scale_blood(preset.pressure, v.circulation);
   if (node.has("blood")) read_blood(node.map("blood"), v);
   v.wall.tolerance = node.quantity_or("tolerance", "uN", v.wall.tolerance, {1e-8, 1e-4});
   v.lumen = true;

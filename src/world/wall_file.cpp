@@ -15,7 +15,7 @@ constexpr Range kVesselLength{1e-5, 0.1};     // [m], radius and length
 constexpr Range kWallDensity{100.0, 1e4};     // [kg/m3]
 constexpr double kMostStress = 1e7;           // [Pa], of muscle and fibres
 constexpr double kMostDamping = 1e5;          // [1/s]
-constexpr double kMostPressure = 1e5;         // [Pa], 750 mmHg
+constexpr Range kPressure{100.0, 1e5};        // [Pa], 750 mmHg
 
 /// Active stress of the muscle around the vessel.
 MuscleTone read_tone(const YamlNode& node) {
@@ -55,7 +55,7 @@ void read_tube(const YamlNode& file, VesselPreset& p) {
   p.shape.length = measured(file, "length", "mm", kVesselLength);
   p.shape.opening_angle = measured(file, "opening_angle", "deg", Range::between(0.0, 1.9 * std::numbers::pi));
   p.axial_stretch = measured(file, "axial_stretch", "-", Range::between(0.5, 3.0));
-  p.pressure = measured(file, "pressure", "mmHg", Range::between(0.0, kMostPressure));
+  p.pressure = measured(file, "pressure", "mmHg", kPressure);
   // the radius in the file is the closed ring's; the opened sector with the same middle line is longer
   const double turn = 2.0 * std::numbers::pi, middle = p.shape.inner_radius + 0.5 * p.shape.thickness;
   p.shape.inner_radius = middle * turn / (turn - p.shape.opening_angle) - 0.5 * p.shape.thickness;

@@ -13,7 +13,7 @@ namespace filum {
 struct VesselPreset {
   std::string title;
   bool tube = true;               // else a flat card: shape has no meaning then
-  TubeShape shape;                // stress-free tube of one stump; its stretch is 1: axial_stretch is what it had in the body
+  TubeShape shape;                // stress-free tube of one stump; its stretch is 1: cut vessels draw back; axial_stretch is what it had in the body
   double axial_stretch = 1.0;     // [-]
   double pressure = 0.0;          // [Pa], transmural, of the vessel in use
   std::vector<WallLayer> layers;  // inner first

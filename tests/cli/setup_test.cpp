@@ -123,6 +123,14 @@ TEST(Setup, EveryTaskThatIsListedCanBeRead) {
   EXPECT_EQ(named, names.size()) << "the course names a task that is not there";
 }
 
+TEST(Setup, AModelIsAFileOrANameOfTheList) {
+  const std::string root = FILUM_SOURCE_DIR, file = root + "/models/vessel/chicken-artery.yaml";
+  const auto by_name = load_setup(root, "artery-stitch", "vessel/chicken-artery"), by_file = load_setup(root, "artery-stitch", file);
+  EXPECT_EQ(by_name.model_file, file);
+  EXPECT_EQ(by_name.model->vessel->name, by_file.model->vessel->name);
+  EXPECT_THROW(load_setup(root, "artery-stitch", "vessel/no-artery"), InputError);
+}
+
 TEST(Setup, ModelsAreNamedByFolderAndFile) {
   EXPECT_TRUE(holds(model_names(FILUM_SOURCE_DIR), "suture/10-0-nylon"));
   EXPECT_TRUE(std::filesystem::exists(demonstration_file(FILUM_SOURCE_DIR, "knot-square")));

@@ -344,6 +344,21 @@ TEST(VesselFile, BloodIsReadInPascalsAndWhatIsNotSaidIsAnArterys) {
   EXPECT_NEAR(vein.circulation.through, 1e-7, 1e-16);
 }
 
+/// A scene that does not say what blood its clamps keep out has the preset's: a vein that is put in an artery's place is not tested at an artery's pressure.
+TEST(VesselFile, BloodIsThatOfThePresetWhereTheSceneDoesNotSay) {
+  const Circulation usual, artery = model_of(kStumps).vessel->circulation;
+  EXPECT_EQ(artery.pressure, usual.pressure);
+  EXPECT_EQ(artery.back, usual.back);
+  EXPECT_EQ(artery.opening, usual.opening);
+  const std::string file = kRoot + "/models/vessel/rat-femoral-vein.yaml", scene = replaced(kStumps, "track: silicone", "track: vein");
+  const Circulation vein = model_of(scene, file).vessel->circulation;
+  EXPECT_NEAR(vein.pressure, load_vessel(file).pressure, 0.1);
+  EXPECT_NEAR(vein.back / vein.pressure, usual.back / usual.pressure, 1e-12);
+  EXPECT_NEAR(vein.opening / vein.pressure, usual.opening / usual.pressure, 1e-12);
+  EXPECT_EQ(vein.through, usual.through);
+  EXPECT_NEAR(model_of(scene + kBlood, file).vessel->circulation.pressure, 75 * 133.322, 0.1) << "what a scene says counts";
+}
+
 TEST(VesselFile, BloodThatDoesNotFlowDownwardsIsRefused) {
   const auto with = [](const std::string& from, const std::string& to) { return std::string(kStumps) + replaced(kBlood, from, to); };
   EXPECT_EQ(refusal_of(with("opening: \"5 mmHg\"", "opening: \"75 mmHg\"")).value, "taken");
@@ -378,6 +393,13 @@ TEST(VesselFile, AnotherPresetTakesThePlaceOfTheScenes) {
 }
 
 TEST(VesselFile, StumpsAreRefusedByFieldAndValue) {
+  const std::string card = kRoot + "/models/vessel/latex-card.yaml";
+  try {
+    model_of(kStumps, card);
+    ADD_FAILURE() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.file + ": " + error.field + ": " + error.value, card + ": kind: card") << "the file that was given, not the scene's";
+  }
   expect_refused(replaced(kStumps, "preset: silicone-tube", "preset: latex-card"), "preset", "latex-card", "a vessel that is a tube");
   expect_refused(replaced(kStumps, "track: silicone", "track: artery"), "track", "artery", "silicone-tube has 1, this track 3");
   expect_refused(replaced(kStumps, "around: \"12\"", "around: \"7\""), "around", "7", "a whole number from 8 to 64");

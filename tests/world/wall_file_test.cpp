@@ -101,6 +101,7 @@ TEST(WallFile, RefusesWhatIsWrong) {
   EXPECT_THROW(load_text(replaced(good, "\"30 kPa\"", "\"30 mm\"")), InputError);
   EXPECT_THROW(load_text(replaced(good, "\"2 MPa\"", "\"40 kPa\"")), InputError);
   EXPECT_THROW(load_text(replaced(good, "beta", "gamma")), InputError);
+  EXPECT_THROW(load_text(replaced(good, "\"100 mmHg\"", "\"0.7 mmHg\"")), InputError) << "without pressure nothing flows";
   try {
     load_text(replaced(good, "\"90 deg\"", "\"900 deg\""));
     FAIL();
