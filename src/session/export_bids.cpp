@@ -175,9 +175,10 @@ void write_hand(const RecordingReader& recording, const Names& names, int tool, 
       if (s.tool != tool) continue;
       if (!out) {
         out = std::make_unique<TextOut>(names.motion / (names.prefix + "_tracksys-" + system + "_motion.tsv"), written);
-        start = s.device_time_us;
+        start = s.host_time_us;
       }
-      std::vector<double> cells{1e-6 * static_cast<double>(s.device_time_us - start)};
+      // Not the devices' own times: several devices may move one tool, and the clock of one may begin anew.
+      std::vector<double> cells{1e-6 * static_cast<double>(s.host_time_us - start)};
       rate.take(cells.front());
       add_pose(cells, s.has_pose ? &s.X_WD : nullptr);
       cells.push_back(s.has_grip_angle ? s.grip_angle : kNaN);
@@ -258,7 +259,8 @@ void write_dataset(const Names& names, const RecordingMeta& meta, std::vector<st
   TextOut(names.root / "dataset_description.json", written) << description.dump(2) + "\n";
   TextOut(names.root / "README", written)
       << "Recordings of a microsurgery trainer. Tracking systems hand0, hand1, ... are the readings of the devices in the\n"
-         "hand's space, times in their LATENCY channel, nothing filled in; scene0, scene1, ... are the poses commanded in the\n"
+         "hand's space, nothing filled in; times in their LATENCY channel are those at which they arrived, by the clock of the\n"
+         "computer that recorded, since the first of the tool: one clock for all devices that move it. scene0, scene1, ... are the poses commanded in the\n"
          "simulated scene after clutch and motion scaling. The origin of both is the middle of the field, x to the right, y\n"
          "away from the trainee, z up; rotations are right-handed quaternions. grip_force is in newton, raw_angle and raw_force are the converter's counts;\n"
          "flags is a bit set: 1 clutch, 2 cut, 4 next, 8 and 16 clamps off, 32 fresh suture, 256 angle saturated, 512 force saturated, 1024 and 2048 their wires broken, 4096 calibration of another handle.\n";

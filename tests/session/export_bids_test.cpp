@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -17,7 +18,9 @@ namespace export_bids_test {
 
 namespace fs = std::filesystem;
 
-void record(const std::string& file, const std::string& participant, const std::string& started) {
+using Change = std::function<void(std::uint64_t, SampleRecord&)>;
+
+void record(const std::string& file, const std::string& participant, const std::string& started, const Change& change = [](std::uint64_t, SampleRecord&) {}) {
   RecorderOptions o;
   o.file = file;
   o.meta.program = "filum test";
@@ -33,6 +36,7 @@ void record(const std::string& file, const std::string& participant, const std::
     for (std::uint64_t k = 2 * i; k < 2 * i + 2; ++k) {
       SampleRecord sample = synthetic::sample(k);
       sample.tool = 0;
+      change(k, sample);
       recorder.record_sample(sample);
     }
     if (i % 50 == 0) recorder.record_event(synthetic::event(i));
@@ -80,6 +84,31 @@ TEST(ExportBids, RecordingsJoinOneDatasetAndTwiceIsOnce) {
   record(folder.file("b.rec"), "P02", "2026-11-21T10:30:00Z");
   for (const char* name : {"a.rec", "b.rec", "a.rec"}) export_bids(RecordingReader(folder.file(name)), folder.file("set"));
   EXPECT_EQ(lines_of(folder.path() / "set/participants.tsv").size(), 3u);
+}
+
+/// First column of the readings of tool 0. [s]
+std::vector<double> latencies(const fs::path& set) {
+  std::vector<double> times;
+  for (const auto& entry : fs::recursive_directory_iterator(set)) {
+    if (entry.path().string().ends_with("_tracksys-hand0_motion.tsv"))
+      for (const std::string& line : lines_of(entry.path())) times.push_back(std::stod(line));
+  }
+  return times;
+}
+
+TEST(ExportBids, ReadingsOfSeveralDevicesHaveOneClock) {
+  synthetic::Folder folder;
+  record(folder.file("a.rec"), "P01", "2026-11-21T09:30:00Z", [](std::uint64_t k, SampleRecord& s) {
+    s.device_time_us = k % 2 == 0 ? 1'795'000'000'000'000 + s.host_time_us  // a camera's, since 1970
+                                  : k < 200 ? 900'000'000 + s.host_time_us : s.host_time_us - 200'000;  // a handle's, which starts again
+  });
+  export_bids(RecordingReader(folder.file("a.rec")), folder.file("set"));
+  const auto times = latencies(folder.path() / "set");
+  ASSERT_EQ(times.size(), 400u);
+  for (std::size_t k = 0; k < times.size(); ++k) ASSERT_NEAR(times[k], 1e-3 * static_cast<double>(k), 1e-9);
+  std::string text;
+  for (const std::string& line : lines_of(folder.path() / "set/README")) text += line + " ";
+  EXPECT_NE(text.find("clock of the computer that recorded"), std::string::npos) << text;
 }
 
 TEST(ExportBids, OnAFullDiskTheDatasetStaysWhole) {
