@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "base/error.h"
@@ -55,11 +57,12 @@ std::size_t cells(const std::string& line) { return 1 + static_cast<std::size_t>
 
 TEST(ExportBids, WritesOneTrackingSystemForHandAndScene) {
   synthetic::Folder folder;
-  record(folder.file("a.rec"), "P_01", "2026-11-21T09:30:00Z");
+  record(folder.file("a.rec"), "P01", "2026-11-21T09:30:00Z");
   const auto files = export_bids(RecordingReader(folder.file("a.rec")), folder.file("set"));
   EXPECT_GE(files.size(), 13u);
   const fs::path motion = folder.path() / "set/sub-P01/ses-20261121T093000Z/motion";
   const std::string prefix = "sub-P01_ses-20261121T093000Z_task-tiphold";
+  for (const std::string& file : files) EXPECT_TRUE(fs::is_regular_file(file)) << file;
   for (const std::string system : {"hand0", "scene0"}) {
     const auto rows = lines_of(motion / (prefix + "_tracksys-" + system + "_motion.tsv"));
     const auto channels = lines_of(motion / (prefix + "_tracksys-" + system + "_channels.tsv"));
@@ -111,12 +114,59 @@ TEST(ExportBids, ReadingsOfSeveralDevicesHaveOneClock) {
   EXPECT_NE(text.find("clock of the computer that recorded"), std::string::npos) << text;
 }
 
-TEST(ExportBids, OnAFullDiskTheDatasetStaysWhole) {
+TEST(ExportBids, CodesThatDifferInSignsOnlyArePeopleOfTheirOwn) {
+  synthetic::Folder folder;
+  const std::vector<std::string> codes{"P1", "P_1", "P-1", "P1_", "--", "__", "", "unknown"};
+  for (std::size_t k = 0; k < codes.size(); ++k) {
+    record(folder.file(std::to_string(k)), codes[k], "2026-11-21T09:30:00Z", [&](std::uint64_t, SampleRecord& s) { s.raw_angle = static_cast<std::int32_t>(k); });
+    export_bids(RecordingReader(folder.file(std::to_string(k))), folder.file("set"));
+  }
+  std::set<std::string> people;
+  for (const auto& entry : fs::directory_iterator(folder.path() / "set")) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("sub-")) people.insert(name);
+  }
+  EXPECT_EQ(people.size(), codes.size());
+  for (const std::string& name : people) EXPECT_TRUE(std::all_of(name.begin() + 4, name.end(), [](unsigned char c) { return std::isalnum(c); })) << name;
+  EXPECT_TRUE(people.contains("sub-P1") && people.contains("sub-unknown"));
+  EXPECT_EQ(lines_of(folder.path() / "set/participants.tsv").size(), codes.size() + 1);
+}
+
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    std::ifstream file(entry.path());
+    all[entry.path().string()] = entry.is_regular_file() ? std::string(std::istreambuf_iterator<char>(file), {}) : "";
+  }
+  return all;
+}
+
+TEST(ExportBids, AnotherRecordingOfTheSameSecondIsRefusedAndNothingChanges) {
+  synthetic::Folder folder;
+  record(folder.file("a.rec"), "P01", "2026-11-21T09:30:00Z");
+  record(folder.file("b.rec"), "P01", "2026-11-21T09:30:00Z", [](std::uint64_t, SampleRecord& s) { s.raw_force = 7; });
+  record(folder.file("c.rec"), "P01", "2026-11-21T09:30:00Z", [](std::uint64_t k, SampleRecord& s) { s.tool = k > 300 ? 1 : 0; });
+  export_bids(RecordingReader(folder.file("a.rec")), folder.file("set"));
+  const auto before = contents(folder.path() / "set");
+  for (const char* other : {"b.rec", "c.rec"}) {
+    try {
+      export_bids(RecordingReader(folder.file(other)), folder.file("set"));
+      ADD_FAILURE() << other << " was written over the first";
+    } catch (const InputError& error) {
+      EXPECT_NE(error.file.find("_motion.tsv"), std::string::npos) << error.what();
+      EXPECT_EQ(error.value, "a file of another recording or program");
+    }
+    EXPECT_EQ(contents(folder.path() / "set"), before) << other;
+  }
+}
+
+TEST(ExportBids, OnAFullDiskTheDatasetStaysAsItWas) {
   synthetic::Folder folder;
   record(folder.file("a.rec"), "P01", "2026-11-21T09:30:00Z");
   record(folder.file("b.rec"), "P02", "2026-11-21T10:30:00Z");
   export_bids(RecordingReader(folder.file("a.rec")), folder.file("set"));
   const RecordingReader second(folder.file("b.rec"));
+  const auto before = contents(folder.path() / "set");
   {
     const DiskLimit limit(8192);  // enough for all but the motion
     try {
@@ -128,8 +178,7 @@ TEST(ExportBids, OnAFullDiskTheDatasetStaysWhole) {
       EXPECT_NE(std::string(error.what()).find("_motion.tsv: export: found a write error"), std::string::npos) << error.what();
     }
   }
-  EXPECT_EQ(lines_of(folder.path() / "set/participants.tsv").size(), 3u);
-  for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "set/sub-P02")) EXPECT_EQ(entry.path().string().find("motion.tsv"), std::string::npos) << entry.path();
+  EXPECT_EQ(contents(folder.path() / "set"), before);
 }
 
 TEST(ExportBids, TheValidatorFindsNoErrors) {
