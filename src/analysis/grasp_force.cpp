@@ -38,7 +38,12 @@ void match_object(const std::vector<HeldObject>& held, Grasp& grasp) {
 }  // namespace
 
 std::vector<Grasp> find_grasps(const std::vector<double>& force, double fs, double t0,
-                               const std::vector<HeldObject>& held, const GraspOptions& o) {
+                               const std::vector<HeldObject>& held, const GraspOptions& o,
+                               const std::function<double(double)>& scene_time) {
+  const auto time = [&](std::size_t k) {
+    const double t = t0 + static_cast<double>(k) / fs;
+    return scene_time ? scene_time(t) : t;
+  };
   std::vector<Grasp> grasps;
   const std::vector<double> smooth = low_pass(force, fs, o.cut_off);
   const auto shortest = static_cast<std::size_t>(std::max(4.0, o.shortest * fs));
@@ -48,8 +53,8 @@ std::vector<Grasp> find_grasps(const std::vector<double>& force, double fs, doub
     while (k < force.size() && force[k] > o.threshold) ++k;
     if (k - first < shortest) continue;
     Grasp grasp;
-    grasp.from = t0 + static_cast<double>(first) / fs;
-    grasp.to = t0 + static_cast<double>(k) / fs;
+    grasp.from = time(first);
+    grasp.to = time(k);
     grasp.peak = *std::max_element(force.begin() + static_cast<std::ptrdiff_t>(first),
                                    force.begin() + static_cast<std::ptrdiff_t>(k));
     for (std::size_t i = std::max<std::size_t>(first, 1); i < k; ++i)

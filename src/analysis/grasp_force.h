@@ -4,6 +4,7 @@
 // experts: high force (peak above P95), low force (peak below P5 and what was held slipped), variable force (coefficient
 // of variation above P95). No band, no errors: they are not guessed. Test: grasp_force_test.
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -33,9 +34,11 @@ struct Grasp {
   bool slipped = false;
 };
 
-/// Force [N] sampled evenly at fs [Hz] from time t0 [s].
+/// Force [N] sampled evenly at fs [Hz] from time t0 [s]. `scene_time`: where the force has another clock than what was held,
+/// to the latter's; grasps are then told by it.
 std::vector<Grasp> find_grasps(const std::vector<double>& force, double fs, double t0,
-                               const std::vector<HeldObject>& held, const GraspOptions& options = {});
+                               const std::vector<HeldObject>& held, const GraspOptions& options = {},
+                               const std::function<double(double)>& scene_time = {});
 
 /// 5th and 95th percentile of experts' grasps.
 struct GraspBands {

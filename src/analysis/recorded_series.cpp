@@ -8,6 +8,8 @@ namespace {
 
 constexpr std::uint32_t kForceSaturated = 0x200;  // bit of SampleRecord::buttons, as devices/sample_faults.h sets it
 constexpr std::uint32_t kForeignCalibration = 0x1000;
+constexpr double kSilence = 0.5;  // [s], in which a handle may have been plugged in again
+constexpr double kMissing = 0.1;  // [s], by which its clock then falls short; readings arrive later than others by less
 
 /// Scene time of a host time: scripts and replays stamp their samples with the scene's own time, hands with the host's.
 class SceneClock {
@@ -23,7 +25,8 @@ class SceneClock {
     const auto at = std::upper_bound(host_.begin(), host_.end(), host);
     if (at == host_.begin()) return scene_.front() - (host_.front() - host);
     const auto k = static_cast<std::size_t>(at - host_.begin()) - 1;
-    return scene_[k] + (host - host_[k]);
+    const double later = scene_[k] + (host - host_[k]);
+    return k + 1 < scene_.size() ? std::min(later, scene_[k + 1]) : later;  // steps that come late do not send the scene back
   }
 
  private:
@@ -36,11 +39,35 @@ class SceneClock {
   std::vector<double> host_, scene_;  // [s]
 };
 
+/// Device time of the next reading of a series, less what the series' clock is ahead of the device's. After a silence the
+/// latter may have begun anew: it then goes on by the scene's, so that the silence is a gap and nothing is mixed.
+template <class Series>
+double going_on(Series& series, double clock, double scene) {
+  clock += series.ahead;
+  if (series.clock.empty()) return clock;
+  const double silent = scene - series.scene.back(), missing = silent - (clock - series.clock.back());
+  if (silent < kSilence || missing < kMissing) return clock;
+  series.ahead += missing;
+  return clock + missing;
+}
+
 void add_point(TimedPath& path, std::vector<double>& flat, double clock, double scene, const Vec3& p) {
-  if (!path.clock.empty() && clock <= path.clock.back()) return;  // a clock that restarted: later windows are lost, not mixed
+  clock = going_on(path, clock, scene);
+  if (!path.clock.empty() && clock <= path.clock.back()) return;  // a clock that restarted: what follows at once is lost, not mixed
   path.clock.push_back(clock);
   path.scene.push_back(scene);
   flat.insert(flat.end(), {p.x(), p.y(), p.z()});
+}
+
+void add_force(TimedForce& grip, const SampleRecord& s, double clock, double scene) {
+  clock = going_on(grip, clock, scene);
+  if (!grip.clock.empty() && clock <= grip.clock.back()) return;
+  grip.source = "device";
+  grip.clock.push_back(clock);
+  grip.scene.push_back(scene);
+  grip.force.push_back(s.grip_force);
+  grip.foreign = grip.foreign || (s.buttons & kForeignCalibration) != 0;
+  grip.saturated += (s.buttons & kForceSaturated) != 0 ? 1 : 0;
 }
 
 Points points_of(const std::vector<double>& flat) {
@@ -55,15 +82,7 @@ void read_samples(const RecordingReader& recording, const SceneClock& scene, std
     const auto i = static_cast<std::size_t>(s.tool);
     const double clock = 1e-6 * static_cast<double>(s.device_time_us), at = scene(s.host_time_us);
     if (s.has_pose && s.X_WD.finite()) add_point(tools[i].hand, flat[i], clock, at, s.X_WD.p);
-    TimedForce& grip = tools[i].grip;
-    if (s.has_grip_force && (grip.clock.empty() || clock > grip.clock.back())) {
-      grip.source = "device";
-      grip.clock.push_back(clock);
-      grip.scene.push_back(at);
-      grip.force.push_back(s.grip_force);
-      grip.foreign = grip.foreign || (s.buttons & kForeignCalibration) != 0;
-      grip.saturated += (s.buttons & kForceSaturated) != 0 ? 1 : 0;
-    }
+    if (s.has_grip_force) add_force(tools[i].grip, s, clock, at);
   }
   for (std::size_t i = 0; i < 3; ++i) tools[i].hand.p = points_of(flat[i]);
 }
@@ -100,6 +119,14 @@ void read_event(const EventRecord& e, ToolSeries& tool) {
 }
 
 }  // namespace
+
+double TimedForce::scene_time(double at) const {
+  const auto next = std::upper_bound(clock.begin(), clock.end(), at);
+  if (next == clock.begin()) return scene.front();
+  const auto k = static_cast<std::size_t>(next - clock.begin()) - 1;
+  if (k + 1 == clock.size()) return scene[k];
+  return scene[k] + (scene[k + 1] - scene[k]) * (at - clock[k]) / (clock[k + 1] - clock[k]);
+}
 
 TimedPath TimedPath::cut(double from, double to) const {
   TimedPath part;

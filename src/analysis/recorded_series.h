@@ -19,6 +19,7 @@ struct TimedPath {
   std::vector<double> clock;  // [s], of the device
   std::vector<double> scene;  // [s]
   Points p;                   // [m], 3 x n
+  double ahead = 0.0;         // [s], of the device's clock, since that began anew
   TimedPath cut(double from, double to) const;  // by scene time
   EvenPath even() const { return even_path(clock, p); }
 };
@@ -26,9 +27,12 @@ struct TimedPath {
 struct TimedForce {
   std::vector<double> clock, scene;  // [s]
   std::vector<double> force;         // [N]
+  double ahead = 0.0;                // [s], as of a path
   std::string source = "none";       // "device", "simulation" or "none"
   bool foreign = false;              // the handle was calibrated by another file than the one in use: forces may be wrong
   std::size_t saturated = 0;         // readings at the end of the amplifier's range: the true force may be larger
+  /// [s], of the scene at a time of the device's clock, between the first and the last reading.
+  double scene_time(double at) const;
 };
 
 struct Window {

@@ -147,13 +147,12 @@ std::vector<Grasp> grasps_of(const ToolSeries& tool, const GraspOptions& o) {
   for (std::size_t k = 0; k < g.force.size(); ++k) as_path(0, static_cast<Eigen::Index>(k)) = g.force[k];
   const EvenPath even = even_path(g.clock, as_path);
   std::vector<Grasp> all;
-  double at = g.scene.front();
-  for (const Points& stretch : even.stretches) {
+  for (std::size_t i = 0; i < even.stretches.size(); ++i) {
+    const Points& stretch = even.stretches[i];
     std::vector<double> force(static_cast<std::size_t>(stretch.cols()));
     for (Eigen::Index k = 0; k < stretch.cols(); ++k) force[static_cast<std::size_t>(k)] = stretch(0, k);
-    const std::vector<Grasp> found = find_grasps(force, even.fs, at, tool.held, o);
+    const std::vector<Grasp> found = find_grasps(force, even.fs, even.starts[i], tool.held, o, [&](double t) { return g.scene_time(t); });
     all.insert(all.end(), found.begin(), found.end());
-    at += static_cast<double>(stretch.cols()) / even.fs;
   }
   return all;
 }

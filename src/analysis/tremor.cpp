@@ -158,7 +158,10 @@ EvenPath even_path(const std::vector<double>& t, const Points& p) {
     }
     for (std::size_t j = first + 1; j <= last; ++j, counted += 1.0)
       square += (t[j] - t[j - 1] - period) * (t[j] - t[j - 1] - period);
-    if (n > 1) path.stretches.push_back(std::move(even));
+    if (n > 1) {
+      path.stretches.push_back(std::move(even));
+      path.starts.push_back(t[first]);
+    }
     first = last + 1;
   }
   path.jitter = counted > 0.0 ? std::sqrt(square / counted) : 0.0;

@@ -25,6 +25,7 @@ struct EvenPath {
   std::vector<Points> stretches;   // [m], 3 x n each
   double jitter = 0.0;             // [s], rms deviation of the sampling times from even ones
   std::size_t gaps = 0;            // where samples are missing; nothing is filled in
+  std::vector<double> starts = {}; // [s], of each stretch, on the clock of the readings
   double seconds() const;
 };
 

@@ -11,6 +11,7 @@ constexpr double kLengthUnit = 1e-7;  // [m]
 constexpr double kQuaternionUnit = 1.0 / (1 << 30);
 constexpr double kReach = 0.2;                      // [m]
 constexpr std::int64_t kClockMayRunBack = 100'000;  // [us], more is a restart
+constexpr std::int64_t kClockMayLeap = 60'000'000;  // [us], of frames that come late; more is a restart: a clock begun anew seems ahead of one past half its range
 constexpr std::int64_t kForgetAfter = 1'000'000;    // [us], a silent device gives up its place
 constexpr int kBelieveAfter = 8;                    // so many late frames in a row are the truth
 
@@ -94,23 +95,24 @@ bool ForcepsStream::follow(Source& from, const filum_frame& frame) noexcept {
   const auto step = static_cast<std::uint16_t>(frame.sequence - static_cast<std::uint16_t>(from.sequence));
   WideClock ahead = from.clock;
   const bool powered_up = frame.type == FILUM_HELLO && frame.sequence == 0;
-  const bool ran_back = ahead.unwrap(frame.time_us) < from.time_us - kClockMayRunBack;
+  const std::int64_t passed = ahead.unwrap(frame.time_us) - from.time_us;
+  const bool ran_back = passed < -kClockMayRunBack;
   const bool late = step == 0 || step >= 0x8000u;
   if (from.used && !powered_up && !ran_back) {
     if (late && ++from.refused_in_row < kBelieveAfter) return false;
     if (!late) lost_ += step - 1u;
   }
-  if (!from.used || powered_up || ran_back || late) {
-    if (from.used && !late) {  // started again: its clock began anew
-      clock_.restart();
-      drift_.restart();
-    }
-    from.used = true;
-    from.sequence = frame.sequence;
+  const bool started_again = from.used && (powered_up || ran_back || (late && passed > kClockMayLeap));
+  if (started_again) {  // its clock began anew, whatever its number was before
     from.clock.restart();
-  } else {
-    from.sequence += step;
+    clock_.restart();
+    drift_.restart();
   }
+  if (!from.used || started_again || late)
+    from.sequence = frame.sequence;
+  else
+    from.sequence += step;
+  from.used = true;
   from.refused_in_row = 0;
   from.time_us = from.clock.unwrap(frame.time_us);
   return true;

@@ -162,7 +162,7 @@ void IgtlTracker::take(const IgtlPose& pose, std::int64_t time_us, std::int64_t 
   sample.tool = tool;
   sample.sequence = sequence_++;
   sample.host_time_us = now_us;
-  sample.device_time_us = time_us;
+  sample.device_time_us = time_us > 0 ? time_us : now_us;
   sample.has_pose = true;
   sample.X_WD = pose.X;
   out.push_back(sample);

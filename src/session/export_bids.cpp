@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file_kind.h"
+#include "base/hash.h"
 #include "base/numbers.h"
 #include "session/export.h"
 #include "session/new_files.h"
@@ -39,32 +40,82 @@ constexpr std::array<Channel, 8> kPoseChannels = {{{"time", "n/a", "LATENCY", "s
 constexpr std::array<Channel, 2> kGripChannels = {{{"grip_angle", "n/a", "MISC", "rad"}, {"grip_force", "n/a", "MISC", "N"}}};
 constexpr std::array<Channel, 3> kRawChannels = {{{"raw_angle", "n/a", "MISC", "n/a"}, {"raw_force", "n/a", "MISC", "n/a"}, {"flags", "n/a", "MISC", "n/a"}}};
 
+constexpr const char* kUnknown = "unknown";
+
 /// Labels are letters and digits only.
-std::string label(const std::string& text, const std::string& otherwise) {
+std::string label(const std::string& text) {
   std::string out;
   for (const char c : text)
     if (std::isalnum(static_cast<unsigned char>(c))) out += c;
-  return out.empty() ? otherwise : out;
+  return out.empty() ? kUnknown : out;
 }
 
-/// A file that takes its place, and that of one before it, when it is whole.
+/// Codes that differ in other signs only (P_1, P-1, P1) are different people: what was left out is told by eight digits of a hash.
+std::string person_label(const std::string& code) {
+  std::string out = label(code);
+  if (code.empty() || (out == code && code != kUnknown)) return out;
+  char digits[9];
+  std::snprintf(digits, sizeof digits, "%08x", static_cast<unsigned>(hash_text(code) & 0xffffffffu));
+  return out + digits;
+}
+
+bool same_bytes(const std::string& a, const std::string& b) {
+  std::ifstream first(a, std::ios::binary), second(b, std::ios::binary);
+  using Bytes = std::istreambuf_iterator<char>;
+  return first && second && std::equal(Bytes(first), {}, Bytes(second), {});
+}
+
+/// The files of one export: written beside their places, and put there when all of them are on disk.
+class Files {
+ public:
+  /// `own`: folder of this recording's files; what lies outside it is shared by all of the dataset.
+  Files(const fs::path& root, fs::path own) : own_(std::move(own)) {
+    for (fs::path made = own_; !made.empty() && !is_there(made); made = made.parent_path()) made_.push_back(made);
+    std::error_code error;
+    fs::create_directories(own_, error);
+    if (!is_folder(own_)) throw InputError(root.string(), "export", error.message(), "a folder that can be made");
+  }
+  /// Leaves nothing that was not put in its place.
+  ~Files() {
+    std::error_code ignored;
+    for (const std::string& place : places_) fs::remove(part(place), ignored);
+    for (const fs::path& made : made_) fs::remove(made, ignored);  // those that are empty: where nothing was put
+  }
+  Files(const Files&) = delete;
+  Files& operator=(const Files&) = delete;
+
+  static std::string part(const std::string& place) { return place + ".part"; }
+  void add(const std::string& place) { places_.push_back(place); }
+  const std::vector<std::string>& places() const { return places_; }
+  /// The same recording again is no other one: its files have the same bytes.
+  std::vector<std::string> put() const {
+    for (const std::string& place : places_)
+      if (fs::path(place).parent_path() == own_ && is_there(place) && !same_bytes(place, part(place)))
+        throw InputError(place, "export", "a file of another recording or program", "a folder without it: an export is never written over");
+    for (const std::string& place : places_) fs::rename(part(place), place);
+    return places_;
+  }
+
+ private:
+  fs::path own_;
+  std::vector<std::string> places_;
+  std::vector<fs::path> made_;  // for this, innermost first
+};
+
 class TextOut {
  public:
-  TextOut(const fs::path& path, std::vector<std::string>& written) : path_(path.string()), part_(path_ + ".part"), stream_(part_) {
-    if (!stream_) throw InputError(path_, "export", "a write error", "a folder that can be written");
-    if (std::find(written.begin(), written.end(), path_) == written.end()) written.push_back(path_);
+  TextOut(const fs::path& place, Files& files) : place_(place.string()), stream_(Files::part(place_)) {
+    if (!stream_) throw InputError(place_, "export", "a write error", "a folder that can be written");
+    files.add(place_);
   }
   ~TextOut() noexcept(false) {
     if (std::uncaught_exceptions() == 0) close();
-    if (stream_.is_open()) drop();
   }
   /// For one that is held by what may not throw as it ends.
   void close() {
     if (!stream_.is_open()) return;
     stream_.close();
-    if (stream_) return fs::rename(part_, path_);
-    drop();
-    throw_unwritten(path_);
+    if (!stream_) throw_unwritten(place_);
   }
   TextOut& operator<<(const std::string& text) {
     stream_ << text;
@@ -72,11 +123,7 @@ class TextOut {
   }
 
  private:
-  void drop() const {
-    std::error_code ignored;
-    fs::remove(part_, ignored);
-  }
-  std::string path_, part_;
+  std::string place_;
   std::ofstream stream_;
 };
 
@@ -107,9 +154,9 @@ struct Names {
   fs::path root, motion;
   std::string subject, session, prefix;  // "sub-P01_ses-..._task-tiphold"
   Names(const RecordingMeta& meta, const std::string& folder) : root(folder) {
-    subject = "sub-" + label(meta.participant, "unknown");
-    session = "ses-" + label(meta.started_utc, "unknown");
-    prefix = subject + "_" + session + "_task-" + label(meta.task, "unknown");
+    subject = "sub-" + person_label(meta.participant);
+    session = "ses-" + label(meta.started_utc);
+    prefix = subject + "_" + session + "_task-" + label(meta.task);
     motion = root / subject / session / "motion";
   }
 };
@@ -125,8 +172,8 @@ struct Rate {
   double value() const { return n > 1 && last > first ? static_cast<double>(n - 1) / (last - first) : 0.0; }
 };
 
-void write_channels(const Names& names, const std::string& system, const std::string& point, bool raw, std::vector<std::string>& written) {
-  TextOut out(names.motion / (names.prefix + "_tracksys-" + system + "_channels.tsv"), written);
+void write_channels(const Names& names, const std::string& system, const std::string& point, bool raw, Files& files) {
+  TextOut out(names.motion / (names.prefix + "_tracksys-" + system + "_channels.tsv"), files);
   out << "name\tcomponent\ttype\ttracked_point\tunits\n";
   const auto put = [&](const Channel& c) {
     out << std::string(c.name) + "\t" + c.component + "\t" + c.type + "\t" + point + "\t" + c.unit + "\n";
@@ -138,7 +185,7 @@ void write_channels(const Names& names, const std::string& system, const std::st
 }
 
 void write_sidecar(const Names& names, const std::string& system, const RecordingMeta& meta, const Rate& rate, bool hand,
-                   std::vector<std::string>& written) {
+                   Files& files) {
   const int misc = hand ? 5 : 2;
   const Json json = {{"TaskName", meta.task},
                      {"TaskDescription", "Task of the microsurgery trainer Filum"},
@@ -155,16 +202,16 @@ void write_sidecar(const Names& names, const std::string& system, const Recordin
                      {"Manufacturer", hand ? meta.input : "Filum"},
                      {"SoftwareVersions", meta.program},
                      {"RecordingDuration", rate.n > 1 ? rate.last - rate.first : 0.0}};
-  TextOut(names.motion / (names.prefix + "_tracksys-" + system + "_motion.json"), written) << json.dump(2) + "\n";
+  TextOut(names.motion / (names.prefix + "_tracksys-" + system + "_motion.json"), files) << json.dump(2) + "\n";
 }
 
 void finish_system(const Names& names, const std::string& system, const RecordingMeta& meta, const Rate& rate, bool hand,
-                   std::vector<std::string>& written) {
-  write_channels(names, system, "tip", hand, written);
-  write_sidecar(names, system, meta, rate, hand, written);
+                   Files& files) {
+  write_channels(names, system, "tip", hand, files);
+  write_sidecar(names, system, meta, rate, hand, files);
 }
 
-void write_hand(const RecordingReader& recording, const Names& names, int tool, std::vector<std::string>& written) {
+void write_hand(const RecordingReader& recording, const Names& names, int tool, Files& files) {
   const std::string system = "hand" + std::to_string(tool);
   Rate rate;
   {
@@ -174,10 +221,11 @@ void write_hand(const RecordingReader& recording, const Names& names, int tool, 
     for (auto cursor = recording.samples(); cursor.next(s);) {
       if (s.tool != tool) continue;
       if (!out) {
-        out = std::make_unique<TextOut>(names.motion / (names.prefix + "_tracksys-" + system + "_motion.tsv"), written);
-        start = s.device_time_us;
+        out = std::make_unique<TextOut>(names.motion / (names.prefix + "_tracksys-" + system + "_motion.tsv"), files);
+        start = s.host_time_us;
       }
-      std::vector<double> cells{1e-6 * static_cast<double>(s.device_time_us - start)};
+      // Not the devices' own times: several devices may move one tool, and the clock of one may begin anew.
+      std::vector<double> cells{1e-6 * static_cast<double>(s.host_time_us - start)};
       rate.take(cells.front());
       add_pose(cells, s.has_pose ? &s.X_WD : nullptr);
       cells.push_back(s.has_grip_angle ? s.grip_angle : kNaN);
@@ -190,15 +238,15 @@ void write_hand(const RecordingReader& recording, const Names& names, int tool, 
     if (!out) return;
     out->close();
   }
-  finish_system(names, system, recording.meta(), rate, true, written);
+  finish_system(names, system, recording.meta(), rate, true, files);
 }
 
-void write_scene(const RecordingReader& recording, const Names& names, int tool, std::vector<std::string>& written) {
+void write_scene(const RecordingReader& recording, const Names& names, int tool, Files& files) {
   const std::string system = "scene" + std::to_string(tool);
   const RecordingMeta& meta = recording.meta();
   Rate rate;
   {
-    TextOut out(names.motion / (names.prefix + "_tracksys-" + system + "_motion.tsv"), written);
+    TextOut out(names.motion / (names.prefix + "_tracksys-" + system + "_motion.tsv"), files);
     StepRecord record;
     for (auto cursor = recording.steps(); cursor.next(record);) {
       const ToolInput& in = record.inputs.tools[static_cast<std::size_t>(tool)];
@@ -210,7 +258,7 @@ void write_scene(const RecordingReader& recording, const Names& names, int tool,
       out << row_of(cells);
     }
   }
-  finish_system(names, system, meta, rate, false, written);
+  finish_system(names, system, meta, rate, false, files);
 }
 
 /// Text in one cell of a table whose columns are parted by tabs.
@@ -220,9 +268,9 @@ std::string cell_of(std::string_view text) {
   return cell.empty() ? "n/a" : cell;
 }
 
-void write_events(const RecordingReader& recording, const Names& names, std::vector<std::string>& written) {
+void write_events(const RecordingReader& recording, const Names& names, Files& files) {
   {
-    TextOut out(names.motion / (names.prefix + "_events.tsv"), written);
+    TextOut out(names.motion / (names.prefix + "_events.tsv"), files);
     out << "onset\tduration\ttrial_type\ttool\tmeasured\tunit\ttext\n";
     EventRecord e;
     for (auto cursor = recording.events(); cursor.next(e);) {
@@ -236,34 +284,36 @@ void write_events(const RecordingReader& recording, const Names& names, std::vec
                      {"measured", {{"Description", "What the event measured, in the unit of the next column"}}},
                      {"unit", {{"Description", "Unit of the column measured"}}},
                      {"text", {{"Description", "The same in words for people, n/a where there are none"}}}};
-  TextOut(names.motion / (names.prefix + "_events.json"), written) << json.dump(2) + "\n";
+  TextOut(names.motion / (names.prefix + "_events.json"), files) << json.dump(2) + "\n";
 }
 
-/// Adds a row to a table that several recordings share, once.
-void add_row(const fs::path& path, const std::string& head, const std::string& row, std::vector<std::string>& written) {
+/// Adds rows to a table that several recordings share, each once.
+void add_rows(const fs::path& path, const std::string& head, const std::vector<std::string>& rows, Files& files) {
   std::string text;
   if (std::ifstream before(path); before) text.assign(std::istreambuf_iterator<char>(before), {});
   if (text.empty()) text = head + "\n";
-  if (text.find("\n" + row + "\n") == std::string::npos) text += row + "\n";
-  TextOut(path, written) << text;
+  for (const std::string& row : rows)
+    if (text.find("\n" + row + "\n") == std::string::npos) text += row + "\n";
+  TextOut(path, files) << text;
 }
 
-void write_dataset(const Names& names, const RecordingMeta& meta, std::vector<std::string>& written) {
+void write_dataset(const Names& names, const RecordingMeta& meta, Files& files) {
   const Json description = {{"Name", "Recordings of the microsurgery trainer Filum"},
                             {"BIDSVersion", "1.9.0"},
                             {"DatasetType", "raw"},
                             {"License", "n/a"},
                             {"Authors", {"not given"}},
                             {"GeneratedBy", {{{"Name", "filum export"}, {"Version", meta.program}}}}};
-  TextOut(names.root / "dataset_description.json", written) << description.dump(2) + "\n";
-  TextOut(names.root / "README", written)
+  TextOut(names.root / "dataset_description.json", files) << description.dump(2) + "\n";
+  TextOut(names.root / "README", files)
       << "Recordings of a microsurgery trainer. Tracking systems hand0, hand1, ... are the readings of the devices in the\n"
-         "hand's space, times in their LATENCY channel, nothing filled in; scene0, scene1, ... are the poses commanded in the\n"
+         "hand's space, nothing filled in; times in their LATENCY channel are those at which they arrived, by the clock of the\n"
+         "computer that recorded, since the first of the tool: one clock for all devices that move it. scene0, scene1, ... are the poses commanded in the\n"
          "simulated scene after clutch and motion scaling. The origin of both is the middle of the field, x to the right, y\n"
          "away from the trainee, z up; rotations are right-handed quaternions. grip_force is in newton, raw_angle and raw_force are the converter's counts;\n"
          "flags is a bit set: 1 clutch, 2 cut, 4 next, 8 and 16 clamps off, 32 fresh suture, 256 angle saturated, 512 force saturated, 1024 and 2048 their wires broken, 4096 calibration of another handle.\n";
-  add_row(names.root / "participants.tsv", "participant_id\tcode", names.subject + "\t" + (meta.participant.empty() ? "n/a" : meta.participant), written);
-  TextOut(names.root / "participants.json", written)
+  add_rows(names.root / "participants.tsv", "participant_id\tcode", {names.subject + "\t" + (meta.participant.empty() ? "n/a" : meta.participant)}, files);
+  TextOut(names.root / "participants.json", files)
       << Json({{"code", {{"Description", "Code of the participant in the trainer; never a name"}}}}).dump(2) + "\n";
 }
 
@@ -272,21 +322,18 @@ void write_dataset(const Names& names, const RecordingMeta& meta, std::vector<st
 std::vector<std::string> export_bids(const RecordingReader& recording, const std::string& folder) {
   const RecordingMeta& meta = recording.meta();
   const Names names(meta, folder);
-  std::error_code error;
-  fs::create_directories(names.motion, error);
-  if (!is_folder(names.motion)) throw InputError(folder, "export", error.message(), "a folder that can be made");
-  std::vector<std::string> written;
-  write_dataset(names, meta, written);
-  for (int tool = 0; tool < 3; ++tool) write_hand(recording, names, tool, written);
-  for (int tool = 0; tool < meta.n_tools; ++tool) write_scene(recording, names, tool, written);
-  write_events(recording, names, written);
-  const fs::path scans = names.root / names.subject / names.session / (names.subject + "_" + names.session + "_scans.tsv");
-  const std::string when = meta.started_utc.empty() ? "n/a" : meta.started_utc;
-  for (const std::string& file : std::vector<std::string>(written)) {
+  Files files(names.root, names.motion);
+  write_dataset(names, meta, files);
+  for (int tool = 0; tool < 3; ++tool) write_hand(recording, names, tool, files);
+  for (int tool = 0; tool < meta.n_tools; ++tool) write_scene(recording, names, tool, files);
+  write_events(recording, names, files);
+  std::vector<std::string> rows;
+  for (const std::string& file : files.places()) {
     if (!file.ends_with("_motion.tsv")) continue;
-    add_row(scans, "filename\tacq_time", "motion/" + fs::path(file).filename().string() + "\t" + when, written);
+    rows.push_back("motion/" + fs::path(file).filename().string() + "\t" + (meta.started_utc.empty() ? "n/a" : meta.started_utc));
   }
-  return written;
+  if (!rows.empty()) add_rows(names.root / names.subject / names.session / (names.subject + "_" + names.session + "_scans.tsv"), "filename\tacq_time", rows, files);
+  return files.put();
 }
 
 }  // namespace filum

@@ -4,6 +4,7 @@
 #include <sched.h>
 #include <soci/sqlite3/soci-sqlite3.h>
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <exception>
@@ -85,7 +86,7 @@ struct Recorder::Impl {
   void start();
   void run();
   void begin() noexcept;
-  void commit_what_came();
+  bool commit_what_came();
   void report_losses();
   template <class Record>
   void report_loss(Channel<Record>& channel, const char* what);
@@ -140,7 +141,8 @@ void Recorder::Impl::set_trouble(const std::string& message) {
   trouble = message;
 }
 
-void Recorder::Impl::commit_what_came() {
+/// False where nothing was waiting, or it could not be stored.
+bool Recorder::Impl::commit_what_came() {
   // Steps first: whatever was pushed before a step that is taken here is then taken in the same transaction.
   steps.drain();
   array_hashes.drain();
@@ -154,7 +156,7 @@ void Recorder::Impl::commit_what_came() {
   }
   const bool nothing = steps.pending.empty() && samples.pending.empty() && events.pending.empty() &&
                        array_hashes.pending.empty() && !new_score;
-  if (nothing) return;
+  if (nothing) return false;
   try {
     writer.commit({steps.pending, samples.pending, events.pending, array_hashes.pending, new_score});
   } catch (const std::exception& error) {
@@ -162,7 +164,7 @@ void Recorder::Impl::commit_what_came() {
     trouble = "not stored, trying again: " + database::reason(error) +
               ". Free some space or choose another folder.";
     if (!score) score.swap(new_score);
-    return;
+    return false;
   }
   const std::lock_guard lock(mutex);
   steps_stored += steps.pending.size();
@@ -172,6 +174,7 @@ void Recorder::Impl::commit_what_came() {
   events.pending.clear();
   array_hashes.pending.clear();
   trouble.clear();
+  return true;
 }
 
 /// Returns when the thread runs and its first commit is on disk: neither its start nor the log's delays a record.
@@ -265,8 +268,12 @@ bool Recorder::close() {
   }
   impl_->wake.notify_all();
   impl_->thread.join();
-  impl_->commit_what_came();  // what was pushed after the thread's last look
-  if (status().message.empty() || status().records_lost > 0) {
+  // What was pushed after the thread's last look. More than one commit takes needs several; whoever still pushes does not keep it open.
+  const RecorderOptions& o = impl_->options;
+  const std::size_t most = std::max({o.step_capacity, o.sample_capacity, o.event_capacity, o.array_hash_capacity}) / kMaxPending + 2;
+  for (std::size_t n = 0; n < most && impl_->commit_what_came(); ++n) {
+  }
+  if (impl_->trouble.empty()) {  // lost records are told in the recording; what is not stored is not
     try {
       impl_->writer.finish();
     } catch (const std::exception& error) {

@@ -18,6 +18,7 @@ struct Made {
   std::string input = "serial /dev/ttyACM0";
   std::function<void(int, SampleRecord&)> change = [](int, SampleRecord&) {};
   std::vector<EventRecord> events = {};
+  double slow = 1.0;  // host seconds for one of the scene
 };
 
 RecordedSession recorded(const Made& m) {
@@ -45,7 +46,7 @@ RecordedSession recorded(const Made& m) {
     if (ms % 2 != 0) continue;
     StepRecord step;
     step.step = static_cast<std::uint64_t>(ms / 2);
-    step.host_time_us = 1000 * ms + kOffset;
+    step.host_time_us = static_cast<std::int64_t>(1000 * m.slow * ms) + kOffset;
     step.inputs.tools[1].valid = ms > 1000;
     step.inputs.tools[1].X_WD.p = Vec3(1e-4 * ms, 0.0, 0.0);
     EXPECT_TRUE(recorder.record_step(step));
@@ -74,12 +75,35 @@ TEST(RecordedSeries, AScriptIsStampedWithTheScenesOwnTime) {
   EXPECT_NEAR(recorded({.input = "demonstrator"}).tools[0].hand.scene[499], 0.5, 1e-9);
 }
 
-TEST(RecordedSeries, AClockThatRestartsLosesWhatFollowsAndMixesNothing) {
+TEST(RecordedSeries, AClockThatRestartsLosesHalfASecondAndMixesNothing) {
   const RecordedSession s = recorded({.change = [](int ms, SampleRecord& r) {
-    if (ms > 1500) r.device_time_us -= 1'500'000;
+    if (ms > 1200) r.device_time_us -= 1'200'000;
   }});
-  EXPECT_EQ(s.tools[0].hand.clock.size(), 1500u);
-  EXPECT_TRUE(std::is_sorted(s.tools[0].hand.clock.begin(), s.tools[0].hand.clock.end()));
+  const std::vector<double>& clock = s.tools[0].hand.clock;
+  ASSERT_NEAR(static_cast<double>(clock.size()), 1501.0, 1.0);
+  EXPECT_NEAR(clock[1200] - clock[1199], 0.5, 1.1e-3);
+  EXPECT_TRUE(std::is_sorted(clock.begin(), clock.end()));
+}
+
+TEST(RecordedSeries, AfterASilenceAClockThatBeganAnewGoesOnByTheScenes) {
+  const RecordedSession s = recorded({.change = [](int ms, SampleRecord& r) {
+    if (ms > 400) r.device_time_us -= 400'000;  // at 800 ms it would say what it said at 400: seen as one, the two parts would be mixed
+    if (ms > 300 && ms <= 900) r.has_pose = r.has_grip_force = false;
+  }});
+  const ToolSeries& t = s.tools[0];
+  ASSERT_EQ(t.hand.clock.size(), 1400u);
+  ASSERT_EQ(t.grip.clock.size(), 1400u);
+  for (const std::vector<double>& clock : {t.hand.clock, t.grip.clock}) {
+    EXPECT_NEAR(clock[300] - clock[299], 0.601, 1e-6) << "the silence is a gap of its length";
+    EXPECT_NEAR(clock[301] - clock[300], 0.001, 1e-9);
+  }
+}
+
+TEST(RecordedSeries, SceneTimeNeverRunsBackWhereStepsComeLate) {
+  const RecordedSession s = recorded({.change = [](int, SampleRecord& r) { r.host_time_us = kOffset + 3 * (r.host_time_us - kOffset); }, .slow = 3.0});
+  const ToolSeries& t = s.tools[0];
+  EXPECT_TRUE(std::is_sorted(t.hand.scene.begin(), t.hand.scene.end())) << "windows are cut by it";
+  EXPECT_NEAR(t.hand.scene[999], 1.0, 2.1e-3);
 }
 
 TEST(RecordedSeries, ForcesSayWhetherTheyCanBeBelieved) {

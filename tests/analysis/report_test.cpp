@@ -20,6 +20,9 @@ struct Session {
   std::string input = "serial /dev/ttyACM0";
   double amplitude = kAmplitude, noise = 0.2e-6, force = 0.3;
   bool drop_samples = false;
+  double lost_from = 0.0, lost_to = 0.0;  // [s], nothing of the device arrives
+  bool replugged = false;                 // the device's clock begins anew after that
+  double slow = 1.0;                      // host seconds for one of the scene
   unsigned seed = 1;
 };
 
@@ -50,16 +53,18 @@ void record(const std::string& file, const Session& s) {
     const double t = 1e-3 * ms;
     hand = hand_at(s, t, random);
     SampleRecord sample;
-    sample.host_time_us = 1000 * ms + host_offset;
-    sample.device_time_us = 1000 * ms + 123'456'789;
+    const auto host_us = static_cast<std::int64_t>(1000 * s.slow * ms) + host_offset;
+    sample.host_time_us = host_us;
+    sample.device_time_us = host_us + (s.replugged && t > s.lost_to ? -10'000'000 : 123'456'789);
     sample.has_pose = sample.has_grip_force = true;
     sample.X_WD.p = hand;
     sample.grip_force = t > 20.0 && t < 24.0 ? s.force : 0.0;
-    if (!(s.drop_samples && ms % 5000 < 5)) recorder.record_sample(sample);
+    const bool lost = (s.drop_samples && ms % 5000 < 5) || (t > s.lost_from && t <= s.lost_to);
+    if (!lost) recorder.record_sample(sample);
     if (ms % 2 == 0) {
       StepRecord step;
       step.step = static_cast<std::uint64_t>(ms / 2);
-      step.host_time_us = 1000 * ms + host_offset;
+      step.host_time_us = host_us;
       step.inputs.tools[0].valid = true;
       step.inputs.tools[0].X_WD.p = kScale * hand;
       ASSERT_TRUE(recorder.record_step(step));
@@ -138,6 +143,34 @@ TEST(Report, GraspForceHasItsExcessAndErrorsNeedExperts) {
   input.reference = {read(folder.file("expert.rec"))};
   grasp = analyse(input, "filum").json["grasp_force"][0];
   EXPECT_EQ(grasp["errors"]["high"], 1);
+}
+
+/// The only grasp of a session that is otherwise as above.
+nlohmann::ordered_json only_grasp(const Session& s) {
+  synthetic::Folder folder;
+  record(folder.file("a.rec"), s);
+  AnalysisInput input;
+  input.sessions = {read(folder.file("a.rec"))};
+  const auto force = analyse(input, "filum").json["grasp_force"][0];
+  EXPECT_EQ(force["grasps"], 1);
+  return force["grasps"] == 1 ? force["each"][0] : nlohmann::ordered_json();
+}
+
+TEST(Report, AGraspIsFoundAtTheScenesTimeWhateverTheDevicesClockDid) {
+  for (const auto& [what, session] : std::vector<std::pair<const char*, Session>>{{"frames lost", {.lost_from = 5.0, .lost_to = 12.0}},
+                                                                                 {"here and there, too", {.drop_samples = true, .lost_from = 5.0, .lost_to = 12.0}},
+                                                                                 {"unplugged and plugged in again", {.lost_from = 5.0, .lost_to = 12.0, .replugged = true}},
+                                                                                 {"at half the speed", {.slow = 2.0}},
+                                                                                 {"both", {.lost_from = 5.0, .lost_to = 12.0, .slow = 2.0}}}) {
+    SCOPED_TRACE(what);
+    const auto grasp = only_grasp(session);
+    ASSERT_FALSE(grasp.is_null());
+    EXPECT_NEAR(grasp["from_s"].get<double>(), 20.0, 0.01);
+    EXPECT_NEAR(grasp["to_s"].get<double>(), 24.0, 0.01);
+    ASSERT_FALSE(grasp["excess_over_slip_limit_n"].is_null()) << "the object was held from 20.5 to 23.5 s";
+    EXPECT_NEAR(grasp["excess_over_slip_limit_n"].get<double>(), 0.2, 1e-12);
+    EXPECT_TRUE(grasp["slipped"].get<bool>());
+  }
 }
 
 TEST(Report, LossesAreGapsAndSessionsAreCorrelated) {

@@ -104,6 +104,7 @@ TEST(EvenPath, GapsEndStretchesAndNothingIsFilledIn) {
   EXPECT_EQ(even.stretches[1].cols(), 550);
   EXPECT_NEAR(even.fs, 1000.0, 1e-6);
   EXPECT_NEAR(even.stretches[1](0, 10), 0.460, 1e-9);
+  EXPECT_EQ(even.starts, (std::vector<double>{t[0], t[400]}));
 }
 
 TEST(EvenPath, JitterIsMeasuredAndALineStaysALine) {

@@ -86,7 +86,7 @@ TEST(ForcepsStream, APoseArrivesToATenthOfAMicrometre) {
 
 TEST(ForcepsStream, AnImpossiblePoseIsRejectedAndAnUntrackedOneIsSilent) {
   Link link;
-  link.send(pose(0, {{0.3, 0, 0}, Quat::Identity()}), 0, 0);       // out of reach
+  link.send(pose(0, {{0.51, 0, 0}, Quat::Identity()}), 0, 0);      // out of reach
   link.send(pose(0, {{0, 0, 0}, Quat(0.5, 0.1, 0, 0)}), 1, 1000);  // no unit quaternion
   filum_frame hidden{};
   filum_pose p = wire_pose(0, {});
@@ -130,6 +130,60 @@ TEST(ForcepsStream, RepeatedAndLateFramesAreRefused) {
   EXPECT_EQ(link.samples.size(), 2u);
   EXPECT_EQ(link.stream.rejected(), 2u);
   EXPECT_EQ(link.stream.lost(), 1u);
+}
+
+/// A handle that also answers pings, 1 ms apart, its clock ahead of the host's by `offset_us`.
+void pongs(Link& link, std::uint16_t first, int n, std::int64_t offset_us) {
+  for (int i = 0; i < n; ++i, link.now_us += 1000) {
+    filum_frame frame{};
+    const filum_pong p{static_cast<std::uint32_t>(link.now_us - 400), static_cast<std::uint32_t>(link.now_us - 200 + offset_us)};
+    filum_put_pong(&frame, &p);
+    link.send(frame, static_cast<std::uint16_t>(first + i), static_cast<std::uint32_t>(link.now_us - 100 + offset_us));
+  }
+}
+
+TEST(ForcepsStream, AHandleThatStartsAgainHasItsClockLearntAnew) {
+  for (const int last : {100, 600, 32000, 33000, 65000}) {
+    SCOPED_TRACE(last);
+    Link link;
+    link.now_us = 50'000'000;
+    pongs(link, static_cast<std::uint16_t>(last - 99), 100, 900'000'000);
+    ASSERT_EQ(link.stream.clock().offset_us(), 900'000'000);
+    ASSERT_TRUE(link.stream.drift().known());
+    filum_frame hello{};
+    const filum_hello h{{1, 2, 3}, 3, 4095, 4095, 1000, 9};
+    filum_put_hello(&hello, &h);
+    link.send(hello, 0, 100);
+    EXPECT_FALSE(link.stream.clock().known());
+    EXPECT_FALSE(link.stream.drift().known());
+    pongs(link, 1, 20, -40'000'000);
+    EXPECT_EQ(link.stream.clock().offset_us(), -40'000'000);
+    EXPECT_NEAR(link.stream.drift().at(link.now_us).offset_us, -40e6, 1.0);
+    EXPECT_EQ(link.stream.rejected(), 0u);
+  }
+}
+
+TEST(ForcepsStream, AWildSequenceNumberLeavesTheClockAlone) {
+  Link link;
+  link.now_us = 1'000'000;
+  const std::int64_t ahead = (std::int64_t{1} << 32) - 1'050'000;  // its 32 bits wrap half way
+  pongs(link, 1, 100, ahead);
+  const std::int64_t offset = link.stream.clock().offset_us();
+  link.send(grip(), 20000, static_cast<std::uint32_t>(link.now_us + ahead));  // a damaged frame that got through
+  pongs(link, 101, 100, ahead);
+  EXPECT_LT(link.stream.rejected(), 10u);
+  EXPECT_EQ(link.stream.clock().offset_us(), offset);
+  EXPECT_NEAR(link.stream.drift().at(link.now_us).drift_ppm, 0.0, 1.0);
+}
+
+TEST(ForcepsStream, AStartThatNobodyHeardOfIsFoundOutByTheClocksLeap) {
+  Link link;
+  link.now_us = 1'000'000;
+  pongs(link, 1000, 100, 2'400'000'000);  // after 40 minutes half a turn of the clock is behind it: zero seems ahead
+  pongs(link, 5, 40, 0);
+  ASSERT_TRUE(link.stream.clock().known());
+  EXPECT_EQ(link.stream.clock().offset_us(), 0);
+  EXPECT_NEAR(link.stream.drift().at(link.now_us).drift_ppm, 0.0, 1.0);
 }
 
 TEST(ForcepsStream, ARestartedHandleIsNoLoss) {

@@ -73,6 +73,16 @@ TEST(IgtlTracker, ATransformIsAPoseInMetres) {
   EXPECT_EQ(f.samples[0].device_time_us, 5'250'000 - 1 + 1);
 }
 
+TEST(IgtlTracker, ASenderWithoutTimeStampsHasTheHostsClock) {
+  Fed f;
+  auto bytes = transform("Tool0", pose_at(0.01));
+  put(bytes, 34, 0, 8);
+  for (const std::int64_t now : {700, 1700}) ASSERT_TRUE(f.tracker.feed(bytes, now, f.samples));
+  ASSERT_EQ(f.samples.size(), 2u);
+  EXPECT_EQ(f.samples[0].device_time_us, 700);
+  EXPECT_EQ(f.samples[1].device_time_us, 1700);
+}
+
 TEST(IgtlTracker, AToolThatIsNotInTheMessageIsADropout) {
   Fed f;
   f.give(tdata({"Tool0", "tool1", "Stylus"}));

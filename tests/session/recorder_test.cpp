@@ -144,6 +144,37 @@ TEST(Recorder, ClosingOnAFullDiskKeepsWhatWasStored) {
   EXPECT_FALSE(recording.finished());
 }
 
+TEST(Recorder, OnAFullDiskARecordingThatLostRecordsIsNotFinished) {
+  const Folder folder;
+  RecorderOptions options = synthetic::options(folder.file("a"));
+  options.step_capacity = 10;
+  options.interval = std::chrono::milliseconds(60000);  // nothing is stored before close()
+  {
+    Recorder recorder(options);
+    for (std::uint64_t i = 1; i <= 25; ++i) recorder.record_step(synthetic::step(i));
+    for (std::uint64_t i = 1; i <= 5000; ++i) ASSERT_TRUE(recorder.record_sample(synthetic::sample(i)));
+    // The mark "finished" has room, what was recorded has not.
+    const DiskLimit full(64 * 1024);
+    EXPECT_FALSE(recorder.close());
+    EXPECT_NE(recorder.status().message.find("not stored"), std::string::npos) << recorder.status().message;
+  }
+  const RecordingReader recording(folder.file("a"));
+  EXPECT_EQ(count_steps(recording), 0u);
+  EXPECT_FALSE(recording.finished());
+}
+
+TEST(Recorder, ClosingStoresAllThatWaits) {
+  const Folder folder;
+  constexpr std::uint64_t kSamples = 130'000;  // more than is kept for one commit, twice
+  RecorderOptions options = synthetic::options(folder.file("a"));
+  options.sample_capacity = kSamples + 8;
+  options.interval = std::chrono::hours(1);
+  Recorder recorder(options);
+  for (std::uint64_t i = 1; i <= kSamples; ++i) ASSERT_TRUE(recorder.record_sample(synthetic::sample(i)));
+  EXPECT_TRUE(recorder.close());
+  EXPECT_EQ(recorder.status().samples_stored, kSamples);
+}
+
 TEST(Recorder, RefusesPlacesItCannotWrite) {
   const Folder folder;
   EXPECT_THROW(Recorder(synthetic::options(folder.file("no/such/folder/a"))), InputError);
