@@ -162,25 +162,27 @@ void score_tails(const RubricItem& rule, const Result& r, ScoreItem& item) {
              ", the worse one counts; " + band_text(rule);
 }
 
-/// Little effort earns nothing unless the task was carried through.
-bool needs_finish(Measure measure) {
+/// Whether a task that was not carried through earns points for it (score.h says the rule).
+bool earned_unfinished(Measure measure) {
   switch (measure) {
-    case Measure::time:
-    case Measure::path_length:
-    case Measure::movements:
-    case Measure::idle_time:
-    case Measure::grip_peak:
-    case Measure::drops:
-    case Measure::thread_overload:
-    case Measure::both_moving:
-    case Measure::force_share:
-    case Measure::objects_broken:
-    case Measure::target_error:
-    case Measure::target_longest:
-    case Measure::on_target:
+    case Measure::throws:
+    case Measure::knot_class:
+    case Measure::security:
+    case Measure::tail_lengths:
+    case Measure::sparc:
+    case Measure::ldlj:
+    case Measure::force_excess:
+    case Measure::needle_angle:
+    case Measure::needle_share:
+    case Measure::needle_present:
+    case Measure::stitches:
+    case Measure::bite_inequality:
+    case Measure::bite_widest:
+    case Measure::entry_error:
+    case Measure::obliquity:
       return true;
     default:
-      return measure >= Measure::pressure_peak;  // all of brain retraction
+      return false;
   }
 }
 
@@ -198,7 +200,7 @@ ScoreItem score_item(const Task& task, const RubricItem& rule, const Result& r) 
     item.why = std::string("no points: ") + why_not_measured(rule.measure);
   } else {
     item.number = value / unit_scale(rule.unit);
-    const bool counts = r.finished || !needs_finish(rule.measure);
+    const bool counts = r.finished || earned_unfinished(rule.measure);
     item.points = counts ? rule.points * rule.band.share(value) : 0.0;
     item.why = counts ? "" : "no points, as not all steps were done; ";
     item.why += shown(value, rule.unit) + ": " + remark(rule.measure, r) + band_text(rule);

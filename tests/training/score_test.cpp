@@ -70,5 +70,53 @@ TEST(Score, KnotsThatWereTiedMustHoldAtTheEnd) {
   EXPECT_NE(tied(6).find("2 knots that were tied do not hold any more"), std::string::npos) << tied(6);
 }
 
+/// An unfinished anastomosis with so many whole stitches, each with bites of the same size and little oblique.
+Result unfinished(int stitches) {
+  Result r;
+  r.needle.emplace();
+  r.needle->has_tissue = true;
+  r.needle->thickness = 0.1e-3;
+  r.needle->out_of_turn = 0;
+  for (int k = 0; k < stitches; ++k) {
+    Stitch& s = r.needle->stitches.emplace_back();
+    s.joins = true;
+    s.bite[0] = s.bite[1] = 0.2e-3;
+    s.obliquity = 0.1;
+  }
+  score(load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/anastomosis-8/task.yaml"), false, r);
+  return r;
+}
+
+double points_of(const Result& r, const std::string& name) {
+  for (const ScoreItem& i : r.items)
+    if (i.name == name) return i.points;
+  return -1.0;
+}
+
+TEST(Score, AnUnfinishedAnastomosisEarnsWhatWasSewnAndNothingForFewFaults) {
+  const Result six = unfinished(6), none = unfinished(0);
+  EXPECT_NEAR(points_of(six, "stitches"), 20.0 / 3.0, 1e-9) << "20 from eight, none at five";
+  EXPECT_EQ(points_of(six, "bite-inequality"), 10.0);
+  EXPECT_EQ(points_of(six, "obliquity"), 5.0);
+  for (const char* fault : {"stitch-order", "lapses", "tissue-pull", "needle-drops", "time"}) EXPECT_EQ(points_of(six, fault), 0.0) << fault;
+  EXPECT_EQ(points_of(unfinished(5), "stitches"), 0.0);
+  EXPECT_EQ(none.total, 0.0);
+  EXPECT_FALSE(six.passed);
+  EXPECT_EQ(six.verdict.front(), "not all steps were done");
+}
+
+/// Whatever its points, so also when they are all there.
+TEST(Score, WhatIsNotFinishedDoesNotPass) {
+  Task task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/artery-stitch/task.yaml");
+  task.pass_points = 0.0;
+  Result r;
+  r.needle.emplace();
+  r.needle->has_tissue = true;
+  r.needle->stitches.emplace_back().joins = true;
+  score(task, false, r);
+  EXPECT_GT(r.total, 0.0);
+  EXPECT_FALSE(r.passed);
+}
+
 }  // namespace score_test
 }  // namespace filum
