@@ -223,20 +223,35 @@ void judge_join(const NeedleTask& task, Result& r) {
   if (gate.patent && !join.patent) fail("the join is not patent");
 }
 
-/// Knots that were asked for, tied and cut, and do not hold any more at the end.
-long opened(const NeedleTask& task, const NeedleReport& n) {
-  const auto is_cut = [&](const NeedleGoal& tie) {
-    return std::any_of(task.goals.begin(), task.goals.end(), [&](const NeedleGoal& g) { return g.kind == NeedleGoal::Kind::cut && g.passes == tie.passes; });
-  };
-  long asked = 0;
+/// Stitches that are to end in a knot, and the classes that count.
+struct AskedKnots {
+  long stitches = 0;
+  long tied_before = 0;  // of a running thread: by knots of their own that are not its last
+  bool running = false;
   std::vector<std::string> classes;
-  for (const NeedleGoal& g : task.goals)
-    if (g.kind == NeedleGoal::Kind::tie && !g.knots.empty() && is_cut(g)) {
-      ++asked;
-      classes.insert(classes.end(), g.knots.begin(), g.knots.end());
-    }
-  const long held = std::count_if(n.stitches.begin(), n.stitches.end(), [&](const Stitch& s) { return std::find(classes.begin(), classes.end(), s.knot) != classes.end(); });
-  return std::max(0L, asked - held);
+};
+
+/// A step that ties and cuts the last of several stitches names the ways up to it, so that its stitches are those of all steps before it as well.
+AskedKnots asked_knots(const std::vector<NeedleGoal>& goals) {
+  AskedKnots asked;
+  for (const NeedleGoal& tie : goals) {
+    asked.running = asked.running || tie.stitch.running;
+    if (tie.kind != NeedleGoal::Kind::tie || tie.knots.empty()) continue;
+    const bool is_cut = std::any_of(goals.begin(), goals.end(), [&](const NeedleGoal& g) { return g.kind == NeedleGoal::Kind::cut && g.passes == tie.passes; });
+    long& stitches = is_cut ? asked.stitches : asked.tied_before;
+    stitches = std::max(stitches, tie.passes / 2L);
+    if (is_cut) asked.classes.insert(asked.classes.end(), tie.knots.begin(), tie.knots.end());
+  }
+  return asked;
+}
+
+/// Knots that were asked for, tied and cut, and do not hold any more at the end. A running thread's last one holds all of its stitches: more than were tied before it.
+long opened(const NeedleTask& task, const NeedleReport& n) {
+  const AskedKnots asked = asked_knots(task.goals);
+  const auto holds = [&](const Stitch& s) { return std::find(asked.classes.begin(), asked.classes.end(), s.knot) != asked.classes.end(); };
+  const long held = std::count_if(n.stitches.begin(), n.stitches.end(), holds);
+  if (asked.running && asked.stitches > 0) return held > asked.tied_before ? 0 : 1;
+  return std::max(0L, asked.stitches - held);
 }
 
 void judge(const Task& task, bool broken, Result& r) {
