@@ -44,7 +44,8 @@ int run(const CommonOptions& o, const Streams& io) {
   Json curricula = Json::array();
   for (const Task& task : load_tasks(o.root, problems)) {
     const std::string curriculum = curriculum_of(o.root, task.name);
-    tasks.push_back({{"name", task.name}, {"title", task.title}, {"demonstration_only", task.demonstration_only}, {"curriculum", curriculum}});
+    const bool shown = std::filesystem::exists(demonstration_file(o.root, task.name));
+    tasks.push_back({{"name", task.name}, {"title", task.title}, {"demonstration", shown}, {"demonstration_only", task.demonstration_only}, {"curriculum", curriculum}});
     curricula.push_back(task.name);
     if (!curriculum.empty() && std::find(curricula.begin(), curricula.end(), Json(curriculum)) == curricula.end()) curricula.push_back(curriculum);
   }

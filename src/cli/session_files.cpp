@@ -67,6 +67,14 @@ Setup setup_of(const RecordingReader& recording, const std::string& folder) {
   return load_setup(folder, recording.meta().task, fs::exists(model) ? model : "", stiffness);
 }
 
+/// Stored by an earlier program: what goes on through the join had a name that said something else.
+void rename_flow(Json& leak) {
+  constexpr const char* kEarlier = "flow_if_tight_ml_per_min";
+  if (!leak.is_object() || !leak.contains(kEarlier)) return;
+  leak["through_ml_per_min"] = leak[kEarlier];
+  leak.erase(kEarlier);
+}
+
 std::string message_of(Json result, const std::string& session) {
   Json message = {{"type", "result"}, {"session", session.empty() ? Json(nullptr) : Json(session)}};
   for (const char* key : {"task", "title", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths"}) {
@@ -75,6 +83,7 @@ std::string message_of(Json result, const std::string& session) {
   }
   for (const char* key : {"verdict", "pressure_map", "stitches", "spacings_m", "lapses", "lapse_rules", "leak", "clamps", "milking", "handling", "thrombosis_factors"})
     if (result.contains(key)) message[key] = std::move(result[key]);
+  if (message.contains("leak")) rename_flow(message["leak"]);
   if (Json scales = scales_of(result); !scales.empty()) message["scales"] = std::move(scales);
   return json_text(message);
 }

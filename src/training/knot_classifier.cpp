@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
 #include "training/knot_closure.h"
 #include "training/knot_invariant.h"
@@ -53,6 +54,7 @@ std::vector<int> stack_in_diagram(const KnotDiagram& diagram, const std::vector<
 void name_knot(const std::vector<int>& members, const std::vector<int>& stack, KnotReport& report) {
   const bool ordered = stack.size() == members.size();
   report.throws = stack;
+  report.members = members;
   report.n_throws = static_cast<int>(members.size());
   report.composition = composition_of(stack);
   report.knot_class = class_of(ordered ? stack : members, ordered);
@@ -111,6 +113,23 @@ KnotReport classify_knot(const Points& nodes, double radius, const PostShape* po
   if (post != nullptr) measure_post(nodes, *post, report);
   judge_lay(nodes, radius, report);
   return report;
+}
+
+std::optional<KnotReport> rest_of_sum(const KnotReport& sum, const KnotReport& part) {
+  std::vector<int> all = sum.members, inner = part.members, rest;
+  std::sort(all.begin(), all.end());
+  std::sort(inner.begin(), inner.end());
+  std::set_difference(all.begin(), all.end(), inner.begin(), inner.end(), std::back_inserter(rest));
+  if (inner.empty() || rest.empty() || rest.size() + inner.size() != all.size()) return {};
+  std::vector<int> stack;
+  if (sum.throws.size() == all.size()) {  // read from the post outwards: the inner knot's throws come first
+    const auto first_outer = sum.throws.begin() + static_cast<std::ptrdiff_t>(inner.size());
+    if (std::is_permutation(sum.throws.begin(), first_outer, inner.begin())) stack.assign(first_outer, sum.throws.end());
+  }
+  KnotReport outer = sum;
+  outer.note.clear();
+  name_knot(rest, stack, outer);
+  return outer;
 }
 
 Laurent jones_of_thread(const Points& nodes, std::uint64_t seed) {

@@ -22,6 +22,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,7 @@ struct KnotReport {
   std::vector<int>
       throws;        // half-twists, from the post outwards: 3 single, 5 double; + right-, - left-handed
   int n_throws = 0;  // number of throws in the knot, known even where their order is not
+  std::vector<int> members;  // half-twists of the throws in no order
   std::string jones = "1";      // polynomial in t
   std::string alexander = "1";  // polynomial in t
   std::int64_t determinant = 1;
@@ -65,5 +67,9 @@ struct KnotOptions {
 /// Nodes that are not finite, or fewer than four, give "unknot" with a note.
 KnotReport classify_knot(const Points& nodes, double radius, const PostShape* post,
                          const KnotOptions& options = {});
+
+/// What the knot `sum` has beside another one, `part`, that lies nearer to the post in the same thread, named by itself; none if `part` is not a
+/// knot within it or all of it. Half-hitches are not told: the lay of the strands was not judged.
+std::optional<KnotReport> rest_of_sum(const KnotReport& sum, const KnotReport& part);
 
 }  // namespace filum

@@ -17,7 +17,7 @@ struct Entry {
 
 void extend(std::vector<Entry>& table, const Entry& from, int largest_index) {
   static const std::vector<int> kThrows = {7, -7, 5, -5, 3, -3};
-  if (from.throws.size() == 4) return;
+  if (from.throws.size() == kMostThrows) return;
   for (int k = largest_index; k < static_cast<int>(kThrows.size()); ++k) {
     Entry next = from;
     next.throws.push_back(kThrows[static_cast<std::size_t>(k)]);

@@ -1,5 +1,5 @@
 #pragma once
-// The knots that stacks of up to four throws can make, by Jones polynomial, and reading a stack from a
+// The knots that stacks of up to kMostThrows throws can make (two knots of three each in one thread), by Jones polynomial, and reading a stack from a
 // diagram.
 
 #include <string>
@@ -10,8 +10,10 @@
 
 namespace filum {
 
+inline constexpr int kMostThrows = 6;
+
 /// Half-twists of the throws whose connected sum has this polynomial, largest first; empty for the unknot or
-/// if none has. Throws of 3, 5 and 7 half-twists of either hand are known, up to four of them.
+/// if none has. Throws of 3, 5 and 7 half-twists of either hand are known, up to kMostThrows of them.
 std::vector<int> throws_of(const Laurent& jones);
 
 /// The throws from the post outwards if the diagram, met from one tail's end to the other's, is a nest of

@@ -31,7 +31,7 @@ struct NeedleGoal {
   double seconds = 0.0;           // [s], load, present, tie and grasp: kept so long
   int side = 0;                   // grasp: of the cut, 0 or 1
   int passes = 0;                 // pass, draw, tie, cut: ways through the tissue
-  int throws = 0;                 // tie: at least
+  int throws = 0;                 // tie: of this knot, at least (not of another one in the same thread)
   std::vector<std::string> knots; // tie: classes that count, none: any
   double loop = 0.0;              // [m], tie: thread in bites and knot at most
   double tail = 0.0;              // [m], draw: thread left before the first entry

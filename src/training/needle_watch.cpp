@@ -161,12 +161,12 @@ bool NeedleWatch::tied(const NeedleGoal& g, const Observation& o) {
   next_knot_ = o.time + kLookEvery;
   tied_ = false;
   if (passes_done(o.tissue) < g.passes) return false;
-  int held = 0;
-  for (const StitchKnot& k : knots_in_tissue(o, 1)) {
-    if (!(k.knot.n_throws >= g.throws && k.loop() <= g.loop) || (!g.knots.empty() && std::find(g.knots.begin(), g.knots.end(), k.knot.knot_class) == g.knots.end())) continue;
-    for (int i = 0; i < o.tissue.n_passes; ++i) held += k.holds(o.tissue.passes[static_cast<std::size_t>(i)].arc) ? 1 : 0;
-  }
-  return tied_ = held >= g.passes;
+  const std::vector<StitchKnot> knots = knots_in_tissue(o, 1);
+  const auto counts = [&](const StitchKnot& k) {
+    return k.knot.n_throws >= g.throws && k.loop() <= g.loop && (g.knots.empty() || std::find(g.knots.begin(), g.knots.end(), k.knot.knot_class) != g.knots.end());
+  };
+  const auto ties = [&](const PassObservation& p) { return std::any_of(knots.begin(), knots.end(), [&](const StitchKnot& k) { return counts(k) && k.holds(p.arc); }); };
+  return tied_ = std::count_if(o.tissue.passes.begin(), o.tissue.passes.begin() + o.tissue.n_passes, ties) >= g.passes;
 }
 
 bool NeedleWatch::met(const NeedleGoal& g, const Observation& o, double dt) {

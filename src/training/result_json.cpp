@@ -154,7 +154,7 @@ Json leak_json(const JoinReport& j, double round) {
           {"open_area_m2", finite(j.area)},
           {"held_mmhg", finite(j.pressure / kMmHg)},
           {"narrowing", finite(j.narrowing)},
-          {"flow_if_tight_ml_per_min", finite(kMlPerMin * j.through)},
+          {"through_ml_per_min", finite(kMlPerMin * j.through)},
           {"patent", j.patent},
           {"thread_in_lumen_m", finite(j.thread_inside)},
           {"edge_overlap_thicknesses", finite(j.overlap)},

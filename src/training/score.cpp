@@ -162,25 +162,27 @@ void score_tails(const RubricItem& rule, const Result& r, ScoreItem& item) {
              ", the worse one counts; " + band_text(rule);
 }
 
-/// Little effort earns nothing unless the task was carried through.
-bool needs_finish(Measure measure) {
+/// Whether a task that was not carried through earns points for it (score.h says the rule).
+bool earned_unfinished(Measure measure) {
   switch (measure) {
-    case Measure::time:
-    case Measure::path_length:
-    case Measure::movements:
-    case Measure::idle_time:
-    case Measure::grip_peak:
-    case Measure::drops:
-    case Measure::thread_overload:
-    case Measure::both_moving:
-    case Measure::force_share:
-    case Measure::objects_broken:
-    case Measure::target_error:
-    case Measure::target_longest:
-    case Measure::on_target:
+    case Measure::throws:
+    case Measure::knot_class:
+    case Measure::security:
+    case Measure::tail_lengths:
+    case Measure::sparc:
+    case Measure::ldlj:
+    case Measure::force_excess:
+    case Measure::needle_angle:
+    case Measure::needle_share:
+    case Measure::needle_present:
+    case Measure::stitches:
+    case Measure::bite_inequality:
+    case Measure::bite_widest:
+    case Measure::entry_error:
+    case Measure::obliquity:
       return true;
     default:
-      return measure >= Measure::pressure_peak;  // all of brain retraction
+      return false;
   }
 }
 
@@ -198,7 +200,7 @@ ScoreItem score_item(const Task& task, const RubricItem& rule, const Result& r) 
     item.why = std::string("no points: ") + why_not_measured(rule.measure);
   } else {
     item.number = value / unit_scale(rule.unit);
-    const bool counts = r.finished || !needs_finish(rule.measure);
+    const bool counts = r.finished || earned_unfinished(rule.measure);
     item.points = counts ? rule.points * rule.band.share(value) : 0.0;
     item.why = counts ? "" : "no points, as not all steps were done; ";
     item.why += shown(value, rule.unit) + ": " + remark(rule.measure, r) + band_text(rule);
@@ -221,20 +223,35 @@ void judge_join(const NeedleTask& task, Result& r) {
   if (gate.patent && !join.patent) fail("the join is not patent");
 }
 
-/// Knots that were asked for, tied and cut, and do not hold any more at the end.
-long opened(const NeedleTask& task, const NeedleReport& n) {
-  const auto is_cut = [&](const NeedleGoal& tie) {
-    return std::any_of(task.goals.begin(), task.goals.end(), [&](const NeedleGoal& g) { return g.kind == NeedleGoal::Kind::cut && g.passes == tie.passes; });
-  };
-  long asked = 0;
+/// Stitches that are to end in a knot, and the classes that count.
+struct AskedKnots {
+  long stitches = 0;
+  long tied_before = 0;  // of a running thread: by knots of their own that are not its last
+  bool running = false;
   std::vector<std::string> classes;
-  for (const NeedleGoal& g : task.goals)
-    if (g.kind == NeedleGoal::Kind::tie && !g.knots.empty() && is_cut(g)) {
-      ++asked;
-      classes.insert(classes.end(), g.knots.begin(), g.knots.end());
-    }
-  const long held = std::count_if(n.stitches.begin(), n.stitches.end(), [&](const Stitch& s) { return std::find(classes.begin(), classes.end(), s.knot) != classes.end(); });
-  return std::max(0L, asked - held);
+};
+
+/// A step that ties and cuts the last of several stitches names the ways up to it, so that its stitches are those of all steps before it as well.
+AskedKnots asked_knots(const std::vector<NeedleGoal>& goals) {
+  AskedKnots asked;
+  for (const NeedleGoal& tie : goals) {
+    asked.running = asked.running || tie.stitch.running;
+    if (tie.kind != NeedleGoal::Kind::tie || tie.knots.empty()) continue;
+    const bool is_cut = std::any_of(goals.begin(), goals.end(), [&](const NeedleGoal& g) { return g.kind == NeedleGoal::Kind::cut && g.passes == tie.passes; });
+    long& stitches = is_cut ? asked.stitches : asked.tied_before;
+    stitches = std::max(stitches, tie.passes / 2L);
+    if (is_cut) asked.classes.insert(asked.classes.end(), tie.knots.begin(), tie.knots.end());
+  }
+  return asked;
+}
+
+/// Knots that were asked for, tied and cut, and do not hold any more at the end. A running thread's last one holds all of its stitches: more than were tied before it.
+long opened(const NeedleTask& task, const NeedleReport& n) {
+  const AskedKnots asked = asked_knots(task.goals);
+  const auto holds = [&](const Stitch& s) { return std::find(asked.classes.begin(), asked.classes.end(), s.knot) != asked.classes.end(); };
+  const long held = std::count_if(n.stitches.begin(), n.stitches.end(), holds);
+  if (asked.running && asked.stitches > 0) return held > asked.tied_before ? 0 : 1;
+  return std::max(0L, asked.stitches - held);
 }
 
 void judge(const Task& task, bool broken, Result& r) {

@@ -1,5 +1,9 @@
 #pragma once
 // From what was measured to points with reasons, and to passed or not.
+//
+// A task that was not carried through earns points for what was achieved: throws, the knot and its ends, stitches, and how well what can only be measured once
+// it was done was done (each stitch's bites and angles, the needle's hold, the eyes). It earns none for what is full while little is done: time, path, drops,
+// lapses, stitches out of turn, pull on the wall; nor for what is measured over the whole of a task (tracking a target, brain retraction). It never passes.
 
 #include "training/result.h"
 #include "training/series_log.h"

@@ -44,6 +44,19 @@ TEST(List, EveryTaskOnDiskIsListedOnceWithItsTitle) {
   for (const auto& model : d["models"]) EXPECT_TRUE(fs::exists(fs::path(FILUM_SOURCE_DIR) / "models" / (model.get<std::string>() + ".yaml"))) << model;
 }
 
+/// With it `--input demo` runs, without it is refused.
+TEST(List, SaysWhichTasksHaveADemonstration) {
+  std::set<std::string> on_disk, listed;
+  for (const auto& at : fs::recursive_directory_iterator(fs::path(FILUM_SOURCE_DIR) / "curricula"))
+    if (at.path().filename() == "demonstration.yaml") on_disk.insert(at.path().parent_path().filename());
+  for (const auto& task : call({"list", "--json"}).json()["tasks"])
+    if (task["demonstration"].get<bool>()) listed.insert(task["name"].get<std::string>());
+  EXPECT_EQ(listed, on_disk);
+  EXPECT_TRUE(listed.count("tip-hold")) << "in a folder of a curriculum";
+  EXPECT_FALSE(listed.count("end-to-side"));
+  EXPECT_FALSE(listed.count("ten-stitches"));
+}
+
 /// What the list offers for --model is taken by a task; what it does not is refused.
 TEST(List, SaysWhichModelsATaskTakes) {
   const auto d = call({"list", "--json"}).json();

@@ -84,6 +84,14 @@ TEST_F(SessionFiles, AStoredResultWithOneScaleHasAListOfIt) {
   EXPECT_FALSE(message.contains("scale"));
 }
 
+TEST_F(SessionFiles, AnEarlierProgramsFlowOnThroughTheJoinIsShown) {
+  auto stored = nlohmann::json::object();
+  for (const char* key : {"task", "title", "finished", "passed", "seconds", "score", "knot", "events", "series", "paths"}) stored[key] = key;
+  stored["leak"] = {{"total_ml_per_min", 0.4}, {"flow_if_tight_ml_per_min", 9.0}};
+  const auto message = nlohmann::json::parse(result_message(stored.dump(), "s"));
+  EXPECT_EQ(message.at("leak"), nlohmann::json({{"total_ml_per_min", 0.4}, {"through_ml_per_min", 9.0}}));
+}
+
 TEST_F(SessionFiles, StoredTextThatIsNoResultGivesNoMessage) {
   for (const char* text : {"", "{", "[]", "null", "{\"task\": 1}"}) EXPECT_EQ(result_message(std::string(text), "s"), "") << text;
 }

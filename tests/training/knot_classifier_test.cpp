@@ -168,5 +168,23 @@ TEST(KnotClassifier, SameInputSameReport) {
             classify_knot(nodes, kRadius, nullptr).n_crossings);
 }
 
+/// A first knot and what was tied beyond it with the same ends.
+TEST(KnotClassifier, TheRestOfASumIsNamedByItself) {
+  const auto rest = [](const std::vector<int>& all, const std::vector<int>& inner) {
+    return rest_of_sum(classify_knot(shapes::throws_round_post(all), 12e-6, nullptr), classify_knot(shapes::throws_round_post(inner), 12e-6, nullptr));
+  };
+  const auto triple = rest({3, -3, 3, -3, 3}, {3, -3});
+  ASSERT_TRUE(triple);
+  EXPECT_EQ(triple->knot_class, "triple");
+  EXPECT_EQ(triple->n_throws, 3);
+  EXPECT_EQ(triple->composition, "1=1=1");
+  EXPECT_EQ(rest({3, -3, 3, 3}, {3, -3})->knot_class, "granny");
+  EXPECT_EQ(rest({3, -3, -3, 3, 3}, {3, -3})->knot_class, "other") << "1=1x1: the order was read";
+  EXPECT_EQ(rest({3, -3, 3, -3, 3, -3}, {3, -3, 3})->knot_class, "triple");
+  EXPECT_FALSE(rest({3, -3}, {3, -3})) << "nothing is left";
+  EXPECT_FALSE(rest({3, -3, 3}, {3, 3, 3})) << "not in it";
+  EXPECT_FALSE(rest({3, -3}, {})) << "no first knot";
+}
+
 }  // namespace knot_classifier_test
 }  // namespace filum

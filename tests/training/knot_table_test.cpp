@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "training/knot_invariant.h"
 
@@ -30,6 +31,24 @@ TEST(KnotTable, NoTwoStacksShareAPolynomial) {
       }
     }
   }
+}
+
+/// Two knots in one thread are a sum of up to six.
+TEST(KnotTable, EverySumOfUpToSixThrowsIsToldFromAllOthers) {
+  const std::vector<int> kinds = {7, -7, 5, -5, 3, -3};
+  int sums = 0;
+  std::function<void(const std::vector<int>&, const Laurent&, std::size_t)> extend = [&](const std::vector<int>& throws, const Laurent& jones, std::size_t from) {
+    EXPECT_EQ(throws_of(jones), throws);
+    ++sums;
+    if (throws.size() == 6) return;
+    for (std::size_t k = from; k < kinds.size(); ++k) {
+      std::vector<int> more = throws;
+      more.push_back(kinds[k]);
+      extend(more, jones * jones_torus(kinds[k]), k);
+    }
+  };
+  extend({}, Laurent::monomial(1, 0), 0);
+  EXPECT_EQ(sums, 924) << "ways to take up to six of six kinds";
 }
 
 TEST(KnotTable, ReadsANestOfThrowsFromThePostOutwards) {

@@ -6,8 +6,13 @@
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
+#include <string>
+#include <vector>
 
+#include "tests/training/knot_shapes.h"
 #include "training/needle_watch.h"
+#include "training/rating_scale.h"
+#include "training/task.h"
 
 namespace filum {
 namespace stitch_knot_test {
@@ -242,7 +247,7 @@ TEST(StitchKnot, EveryPieceOfTheThreadHasItsOwnKnot) {
   EXPECT_EQ(stitches[2].knot, "overhand");
   EXPECT_NEAR(stitches[0].tail, length_between(o, 0, n - 1) - (knots[0].end - knots[0].begin) - knots[0].begin, 1e-3) << "of the first piece the long end was cut";
   o.n_parted = 0;
-  EXPECT_EQ(knots_in_tissue(o).size(), 1u) << "one thread, one look";
+  EXPECT_EQ(knots_in_tissue(o).size(), 2u) << "one thread, tied twice";
 }
 
 TEST(StitchKnot, OfTwoCutEndsTheLongerAndTheShorterAreTold) {
@@ -269,6 +274,122 @@ TEST(StitchKnot, TheTailsOfALaterSutureAreThoseOfTheFirst) {
   EXPECT_NEAR(laid[1], laid[3], 1e-9);
   EXPECT_NEAR(second_cut[1], laid[1], 1e-9);
   EXPECT_GT(second_cut[2], laid[2] + 1e-3) << "now the short end counts";
+}
+
+constexpr int kRunning = 8;  // stitches of the running thread
+
+/// A running thread: `first` ties its first stitch, then it goes through seven more and comes back to be tied to its short end with `last`.
+Observation running_thread(const std::vector<int>& first, const std::vector<int>& last) {
+  std::vector<int> all = first;
+  all.insert(all.end(), last.begin(), last.end());
+  const Points knots = shapes::throws_round_post(all);
+  const auto nodes_of = [](const std::vector<int>& throws) {
+    int n = 0;
+    for (const int half_twists : throws) n += 6 * std::abs(half_twists) + 1;
+    return n;
+  };
+  const int loop = 10 + nodes_of(all), leaves = loop + 17 + nodes_of(first);  // where the first stitch lies, and where the thread runs on
+  std::vector<Vec3> p;
+  for (int k = 0; k < leaves; ++k) p.push_back(knots.col(k));
+  const Vec3 from = p.back(), out = Vec3(from.x() > 0.0 ? 1.0 : -1.0, 0.0, 0.0);
+  const int runs = static_cast<int>(p.size());
+  for (int k = 0; k <= 60; ++k) {  // out to one side and back beside it
+    const double a = std::numbers::pi * k / 60.0;
+    p.push_back(from + 4e-3 * std::sin(a) * out + Vec3(0.0, 0.5e-3 * std::sin(2.0 * a), 0.0));
+  }
+  for (int k = leaves; k < knots.cols(); ++k) p.push_back(knots.col(k));
+  Observation o;
+  o.radius = 12e-6;
+  o.positions = shapes::from_list(p);
+  o.n_nodes = static_cast<int>(p.size());
+  o.arc.assign(1, 0.0);
+  for (std::size_t k = 1; k < p.size(); ++k) o.arc.push_back(o.arc.back() + (p[k] - p[k - 1]).norm());
+  o.tissue.n_passes = 2 * kRunning;
+  for (int i = 0; i < o.tissue.n_passes; ++i) {
+    PassObservation& pass = o.tissue.passes[static_cast<std::size_t>(i)];
+    const auto node = static_cast<std::size_t>(i < 2 ? loop + 5 + 6 * i : runs + 4 * i);
+    pass.arc = o.arc[node];
+    pass.entry_W = pass.exit_W = p[node];
+    pass.out = true;
+    pass.state = PassObservation::State::thread;
+  }
+  return o;
+}
+
+/// Its stitches with their knots.
+NeedleReport running_report(const std::vector<int>& first, const std::vector<int>& last) {
+  const Observation o = running_thread(first, last);
+  NeedleReport r;
+  r.has_tissue = true;
+  for (int k = 0; k < kRunning; ++k) {
+    Stitch& s = r.stitches.emplace_back();
+    s.first = 2 * k;
+    s.second = 2 * k + 1;
+    s.joins = true;
+  }
+  for (const StitchKnot& k : knots_in_tissue(o)) name_knots(k, o.tissue, r.stitches);
+  return r;
+}
+
+std::string classes_of(const NeedleReport& r) {
+  std::string text;
+  for (const Stitch& s : r.stitches) text += (text.empty() ? "" : " ") + (s.knot.empty() ? std::string("-") : s.knot) + std::to_string(s.throws);
+  return text;
+}
+
+TEST(StitchKnot, ARunningThreadHasTheKnotOfItsFirstStitchAndThatOfItsEnd) {
+  const auto like = [](const std::string& first, const std::string& others) {
+    std::string text = first;
+    for (int k = 1; k < kRunning; ++k) text += " " + others;
+    return text;
+  };
+  const NeedleReport good = running_report({3, -3}, {3, -3, 3});
+  EXPECT_EQ(classes_of(good), like("square2", "triple3"));
+  EXPECT_EQ(scale_value("knots-secure", good), 1.0);
+  EXPECT_EQ(classes_of(running_report({3, -3, 3}, {-3, 3, -3})), like("triple3", "triple3"));
+  EXPECT_EQ(classes_of(running_report({-5, 3}, {-3, 3, -3})), like("surgeons2", "triple3"));
+  EXPECT_EQ(classes_of(running_report({3, -3}, {})), like("square2", "-0")) << "its end is not tied";
+  EXPECT_EQ(classes_of(running_report({}, {3, -3, 3})), like("triple3", "triple3")) << "one knot that holds them all";
+  const NeedleReport granny = running_report({3, -3}, {3, 3});
+  EXPECT_EQ(classes_of(granny), like("square2", "granny2"));
+  EXPECT_EQ(scale_value("knots-secure", granny), 1.0 / kRunning) << "only the first one holds";
+}
+
+TEST(StitchKnot, TheStitchesOfARunningThreadHaveItsEndsAndAPartOfItsSlackEach) {
+  const Observation o = running_thread({3, -3}, {3, -3, 3});
+  const NeedleReport r = running_report({3, -3}, {3, -3, 3});
+  const StitchKnot whole = knot_in_piece(o, {0, o.n_nodes - 1});
+  for (const Stitch& s : r.stitches) EXPECT_EQ(s.tail, whole.tail);
+  EXPECT_NEAR(r.stitches[3].slack, (whole.loop() - way_round(whole, o.tissue)) / kRunning, 1e-12);
+  EXPECT_LT(r.stitches[0].slack, whole.loop()) << "of its own loop";
+  EXPECT_GT(r.stitches[0].slack, 0.0);
+}
+
+/// As its task asks for it: three throws at the end, whatever the first stitch was tied with.
+TEST(StitchKnot, AContinuousSutureIsDoneAsItsHintSays) {
+  const auto task = load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/continuous-suture/task.yaml").needle;
+  NeedleTask end;
+  end.has_tissue = true;
+  for (const NeedleGoal& g : task->goals)
+    if (g.kind == NeedleGoal::Kind::tie && g.passes == 2 * kRunning) end.goals = {g};
+  ASSERT_EQ(end.goals.size(), 1u);
+  const auto done = [&](const std::vector<int>& first, const std::vector<int>& last) {
+    NeedleWatch watch(end, {});
+    std::vector<TaskEvent> events;
+    Observation o = running_thread(first, last);
+    for (int step = 0; step < 8; ++step) {
+      o.time = 0.1 * step;
+      watch.observe(o, 0.1, true, events);
+    }
+    return watch.done();
+  };
+  EXPECT_TRUE(done({3, -3}, {3, -3, 3}));
+  EXPECT_TRUE(done({3, -3, 3}, {-3, 3, -3}));
+  EXPECT_TRUE(done({5, -3}, {3, -3, 3}));
+  EXPECT_FALSE(done({3, -3}, {})) << "only the first knot";
+  EXPECT_FALSE(done({3, -3, 3}, {-3})) << "four throws in the thread, but the last knot has one";
+  EXPECT_FALSE(done({3, -3}, {3, -3})) << "two throws";
+  EXPECT_FALSE(done({3, -3}, {3, 3, 3})) << "a granny with one more";
 }
 
 }  // namespace stitch_knot_test

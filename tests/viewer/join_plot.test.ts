@@ -4,7 +4,7 @@ import type { Leak, Stitch } from "@viewer/messages";
 const stitch = (position: number | null): Stitch => ({ time: 1, passes: [0, 1], bite_m: [3e-4, 3e-4], bite_thicknesses: [2, 2], entry_angle_deg: 80, exit_angle_deg: 70, obliquity_deg: 5,
   depth_share: 1, position_m: position, tension_n: 0, peak_force_n: 0, torn_m: 0 });
 const edge = (gap: (angle: number) => number) => Array.from({ length: 24 }, (_, k) => ({ angle_deg: 15 * k, gap_m: gap(15 * k) }));
-const leak = (gap: (angle: number) => number): Leak => ({ total_ml_per_min: 1, per_sector: [], gap_m: [], open_area_m2: 0, held_mmhg: 100, narrowing: 0, flow_if_tight_ml_per_min: 1, patent: true,
+const leak = (gap: (angle: number) => number): Leak => ({ total_ml_per_min: 1, per_sector: [], gap_m: [], open_area_m2: 0, held_mmhg: 100, narrowing: 0, through_ml_per_min: 1, patent: true,
   thread_in_lumen_m: 0, edge_overlap_thicknesses: 0, solver_sound: true, round_m: 3e-3, edge: edge(gap) });
 
 describe("picture of the join", () => {

@@ -108,7 +108,7 @@ export function joinSection(leak: Leak | undefined, stitches: readonly Stitch[] 
   const narrow = leak.narrowing === null ? "not measured" : `${(100 * leak.narrowing).toFixed(0)} %`;
   return h("section", { class: "panel joinpanel", "aria-labelledby": "join-title" }, h("h2", { id: "join-title" }, `Clamps off, held at ${cell(leak.held_mmhg, 1, 0)} mmHg`),
     h("dl", { class: "facts" }, h("dt", {}, "Leak"), h("dd", {}, `${cell(leak.total_ml_per_min, 1, 1)} ml/min`), h("dt", {}, "Narrowing"), h("dd", {}, narrow),
-      h("dt", {}, "Flow on beyond the join"), h("dd", {}, `${cell(leak.flow_if_tight_ml_per_min, 1, 1)} ml/min`), h("dt", {}, "Lumen"), h("dd", {}, leak.patent ? "patent" : "not patent"),
+      h("dt", {}, "Flow on beyond the join"), h("dd", {}, `${cell(leak.through_ml_per_min, 1, 1)} ml/min`), h("dt", {}, "Lumen"), h("dd", {}, leak.patent ? "patent" : "not patent"),
       h("dt", {}, "Thread in the lumen"), h("dd", {}, `${cell(leak.thread_in_lumen_m, 1000, 2)} mm`), h("dt", {}, "Edges overlap or rolled in"), h("dd", {}, `${cell(leak.edge_overlap_thicknesses, 1, 1)} wall thicknesses`)),
     picture ? h("h3", {}, "Gap and stitches round the cut") : null, picture, h("h3", {}, "Leak round the cut"), h("ul", { class: "sectors" }, ...bars), leak.solver_sound ? null : h("p", { class: "alarm" }, "The wall solver had trouble: take these numbers with care."));
 }
