@@ -38,7 +38,10 @@ void add_simulated_grip(const RecordingReader& recording, RecordedSession& sessi
   const std::vector<double>* time = column(table, "time");
   for (ToolSeries& tool : session.tools) {
     const std::vector<double>* force = column(table, "tool" + std::to_string(tool.tool) + "_grip_force");
-    if (time && force) tool.grip = {*time, *time, *force, "simulation"};
+    if (!time || !force) continue;
+    tool.grip.clock = tool.grip.scene = *time;
+    tool.grip.force = *force;
+    tool.grip.source = "simulation";
   }
 }
 
