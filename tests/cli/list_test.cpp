@@ -49,7 +49,8 @@ TEST(List, SaysWhichTasksHaveADemonstration) {
   std::set<std::string> on_disk, listed;
   for (const auto& at : fs::recursive_directory_iterator(fs::path(FILUM_SOURCE_DIR) / "curricula"))
     if (at.path().filename() == "demonstration.yaml") on_disk.insert(at.path().parent_path().filename());
-  for (const auto& task : call({"list", "--json"}).json()["tasks"])
+  const auto list = call({"list", "--json"}).json();
+  for (const auto& task : list["tasks"])
     if (task["demonstration"].get<bool>()) listed.insert(task["name"].get<std::string>());
   EXPECT_EQ(listed, on_disk);
   EXPECT_TRUE(listed.count("tip-hold")) << "in a folder of a curriculum";
