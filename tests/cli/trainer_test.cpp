@@ -64,18 +64,24 @@ TEST(Trainer, WhatCannotBeDoneIsSaidAndTheTrainerGoesOn) {
   EXPECT_EQ(trainer.get("/api/health").at("state"), "running");
 }
 
+/// Sends poses of the first tool until the trainer's device of this number has received one, or for 200 frames. What is then said of the device.
+json moved_by_pointer(Client& browser, std::size_t number) {
+  json device;
+  for (int k = 0; k < 200 && (device.is_null() || device.at("received") == 0); ++k) {
+    browser.say(R"({"type":"pointer","tool":0,"time":)" + std::to_string(0.01 * k) + R"(,"position":[0,0,0.01],"quaternion":[1,0,0,0],"grip":0.2,"buttons":0})");
+    const json frame = browser.hear("frame");
+    device = frame.at("devices").at(number);
+    browser.say(R"({"type":"ack","frame":)" + frame.at("id").dump() + "}");
+  }
+  return device;
+}
+
 TEST(Trainer, ThePointerMovesTheToolOnlyWhileItsBrowserIsThere) {
   const StartedTrainer trainer;
   Client browser(trainer.port());
   browser.say(R"({"type":"start","task":"tip-hold","input":"pointer"})");
   hear_state(browser, "running");
-  json device;
-  for (int k = 0; k < 200 && (device.is_null() || device.at("received") == 0); ++k) {
-    browser.say(R"({"type":"pointer","tool":0,"time":)" + std::to_string(0.01 * k) + R"(,"position":[0,0,0.01],"quaternion":[1,0,0,0],"grip":0.2,"buttons":0})");
-    const json frame = browser.hear("frame");
-    device = frame.at("devices").at(0);
-    browser.say(R"({"type":"ack","frame":)" + frame.at("id").dump() + "}");
-  }
+  const json device = moved_by_pointer(browser, 0);
   EXPECT_GT(device.at("received").get<int>(), 0) << device;
   browser.vanish();
   Client watcher(trainer.port());
@@ -98,13 +104,7 @@ TEST(Trainer, BesideForcepsThePointerMovesTheTool) {
   EXPECT_FALSE(hear_state(browser, "running").at("pointer").get<bool>());
   browser.say(R"({"type":"start","task":"tip-hold","input":"device"})");
   EXPECT_TRUE(hear_state(browser, "running").at("pointer").get<bool>());
-  json device;
-  for (int k = 0; k < 200 && (device.is_null() || device.at("received") == 0); ++k) {
-    browser.say(R"({"type":"pointer","tool":0,"time":)" + std::to_string(0.01 * k) + R"(,"position":[0,0,0.01],"quaternion":[1,0,0,0],"grip":0.2,"buttons":0})");
-    const json frame = browser.hear("frame");
-    device = frame.at("devices").at(1);
-    browser.say(R"({"type":"ack","frame":)" + frame.at("id").dump() + "}");
-  }
+  const json device = moved_by_pointer(browser, 1);
   EXPECT_GT(device.at("received").get<int>(), 0) << device;
   browser.say(R"({"type":"stop"})");
   EXPECT_FALSE(hear_state(browser, "ended").at("pointer").get<bool>());
