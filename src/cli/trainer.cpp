@@ -292,7 +292,7 @@ void Trainer::start_session(const StartMessage& start, Setup setup, InputDevices
   if (recorder_ && start.exam) recorder_->record_event({0, 0.0, "exam", -1, 1.0, "-"});
   colours_ = std::make_shared<WallColours>(setup.model);
   const auto marks = setup.task.needle ? eye_marks(setup.task.needle->goals, setup.model->description.tissue) : std::vector<StitchGuide>();
-  const auto guides = !marks.empty() ? marks : start.exam || !setup.task.needle ? std::vector<StitchGuide>() : stitch_guides(setup.model->description.tissue, setup.model->description.needle, setup.task.needle->lapses);
+  const auto guides = !marks.empty() ? marks : start.exam || !setup.task.needle ? std::vector<StitchGuide>() : stitch_guides(setup.model->description.tissue, setup.model->description.needle, *setup.task.needle);
   options.show = [server = server_.get(), stream = stream_.get(), colours = colours_](const LiveView& v) {
     if (stream) stream->send_all(v.observation);
     TaskView task = task_view_of(v.status);

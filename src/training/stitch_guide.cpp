@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "base/numbers.h"
+#include "training/stitch_places.h"
 
 namespace filum {
 namespace {
 
-constexpr int kRound = 8, kOnCard = 5, kPathPoints = 17;
-constexpr double kCardSpacing = 1e-3;                    // [m]
-constexpr double kAbove = 0.6;                           // [rad], of the needle's circle, shown outside the tissue
+constexpr int kPathPoints = 17;
+constexpr double kAbove = 0.6;  // [rad], of the needle's circle, shown outside the tissue
 
 int nearest(const Points& rest, const Vec3& at) {
   Eigen::Index k = -1;
@@ -80,27 +81,25 @@ StitchGuide guide(const TissueDescription& t, const NeedleDescription& needle, c
 
 }  // namespace
 
-std::vector<StitchGuide> stitch_guides(const TissueDescription& t, const NeedleDescription& needle, const LapseRules& rules) {
+std::vector<StitchGuide> stitch_guides(const TissueDescription& t, const NeedleDescription& needle, const NeedleTask& task) {
   std::vector<StitchGuide> guides;
   if (t.triangles.empty() || !needle.present) return guides;
-  const double bite = 2.0 / 3.0 * rules.wide_bite * t.thickness;
+  const double bite = 2.0 / 3.0 * task.lapses.wide_bite * t.thickness;
   if (!t.lumen) {
     const Vec3 across = Vec3::UnitZ().cross(t.cut_along).normalized();
-    const auto along = (t.cut_along.transpose() * t.rest).eval();
-    const double spacing = std::min(kCardSpacing, (along.maxCoeff() - along.minCoeff()) / (kOnCard + 1));
-    for (int k = 0; k < kOnCard; ++k) {
-      const Vec3 on_cut = t.middle + spacing * (k - kOnCard / 2) * t.cut_along + 0.5 * t.thickness * Vec3::UnitZ();
+    for (const double along : stitches_along(task.goals, t)) {
+      const Vec3 on_cut = t.middle + along * t.cut_along + 0.5 * t.thickness * Vec3::UnitZ();
       guides.push_back(guide(t, needle, on_cut, Vec3::UnitZ(), across, bite));
     }
     return guides;
   }
-  for (const int k : {0, 4, 2, 6, 1, 3, 5, 7}) {  // stays at 180 degrees, then half way between
+  for (const double angle : stitch_angles(task.goals, t)) {
     if (!t.edges[0].rim.empty()) {
-      guides.push_back({beside_edge(t, needle, 0, static_cast<double>(k) / kRound, bite), beside_edge(t, needle, 1, static_cast<double>(k) / kRound, bite)});
+      const double share = angle / kTurn - std::floor(angle / kTurn);
+      guides.push_back({beside_edge(t, needle, 0, share, bite), beside_edge(t, needle, 1, share, bite)});
       std::reverse(guides.back().out.path.begin(), guides.back().out.path.end());
       continue;
     }
-    const double angle = 2.0 * std::numbers::pi * k / kRound;
     const Vec3 outward = std::cos(angle) * t.cut_along + std::sin(angle) * t.axis.cross(t.cut_along);
     guides.push_back(guide(t, needle, t.middle + t.radius * outward, outward, t.axis, bite));
   }

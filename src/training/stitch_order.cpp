@@ -89,6 +89,13 @@ void StitchOrder::take(const Made& m, double time, std::vector<TaskEvent>& event
   }
 }
 
+bool StitchOrder::asks_for(double angle) const { return turn() >= 0 && fits(turn(), {0, 0, {angle, angle}, -1}); }
+
+void StitchOrder::make(double angle) {
+  std::vector<TaskEvent> untold;
+  take({0, 0, {angle, angle}, -1}, 0.0, untold);
+}
+
 void StitchOrder::observe(const Observation& o, std::vector<TaskEvent>& events) {
   pairs_.observe(o);
   for (; taken_ < pairs_.made().size(); ++taken_) {

@@ -27,6 +27,10 @@ class StitchOrder {
   bool made(int goal) const;
   /// The stitches of this goal run on from the one before them on one thread that is neither cut nor knotted among them. Takes milliseconds.
   bool runs_on(int goal, const Observation& o) const;
+  /// A stitch at this angle [rad] on both sides would be in its turn.
+  bool asks_for(double angle) const;
+  /// As if one were made there.
+  void make(double angle);
   int out_of_turn() const { return out_of_turn_; }
   const StitchPairs& pairs() const { return pairs_; }
 

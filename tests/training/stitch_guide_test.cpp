@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "oblique_edges.h"
+#include "training/task.h"
 
 namespace filum {
 namespace stitch_guide_test {
@@ -36,9 +38,11 @@ TissueDescription vessel() {
   return t;
 }
 
+NeedleTask task(const std::string& name) { return *load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + name + "/task.yaml").needle; }
+
 TEST(StitchGuide, StandsTwoThicknessesFromBothEdgesRoundTheVessel) {
   const TissueDescription t = vessel();
-  const auto guides = stitch_guides(t, needle(), {});
+  const auto guides = stitch_guides(t, needle(), task("anastomosis-8"));
   ASSERT_EQ(guides.size(), 8u);
   for (const StitchGuide& g : guides) {
     EXPECT_NEAR((g.in.at - t.middle).dot(t.axis), -0.4e-3, 1e-9);
@@ -51,8 +55,8 @@ TEST(StitchGuide, StandsTwoThicknessesFromBothEdgesRoundTheVessel) {
 
 TEST(StitchGuide, NeedleGoesInAtARightAngleAndDeepEnough) {
   const TissueDescription t = vessel();
-  const StitchGuide g = stitch_guides(t, needle(), {})[0];
-  const Vec3 outward = t.cut_along;
+  const StitchGuide g = stitch_guides(t, needle(), task("vessel-stitch"))[0];
+  const Vec3 outward = Vec3::UnitZ();  // on top
   double least = 1.0, depth = 0.0;
   Vec3 direction = Vec3::Zero();
   for (std::size_t k = 0; k + 1 < g.in.path.size(); ++k) {
@@ -77,7 +81,7 @@ TEST(StitchGuide, RoundAnOpeningHeelAndToeFirst) {
     t.rest.col(k) = p + 0.2e-3 * p.normalized() + 0.1e-3 * Vec3::UnitZ();
     t.rest.col(400 + k) = q - 0.2e-3 * t.edges[1].axis + 0.1e-3 * (q - t.edges[1].origin).normalized();
   }
-  const auto guides = stitch_guides(t, needle(), {});
+  const auto guides = stitch_guides(t, needle(), task("end-to-side"));
   ASSERT_EQ(guides.size(), 8u);
   EXPECT_NEAR(guides[0].in.at.y(), 0.9e-3, 0.02e-3) << "the heel";
   EXPECT_NEAR(guides[1].in.at.y(), -0.9e-3, 0.02e-3) << "the toe";
@@ -88,26 +92,43 @@ TEST(StitchGuide, RoundAnOpeningHeelAndToeFirst) {
   }
 }
 
-TEST(StitchGuide, FiveOnACardWithinItsWidth) {
+TEST(StitchGuide, TenOnACardWithinItsWidth) {
   TissueDescription t;
   t.thickness = 0.15e-3;
   t.cut_along = Vec3::UnitX();
   t.rest.resize(3, 2 * 9 * 5);
   for (int k = 0; k < t.rest.cols(); ++k) t.rest.col(k) = Vec3(1e-3 * ((k / 10) - 4) * 0.5, (k % 2 == 0 ? -1.0 : 1.0) * (0.1e-3 + 0.5e-3 * (k / 2 % 5)), 0.075e-3);
   t.triangles.push_back({0, 2, 4});
-  const auto guides = stitch_guides(t, needle(), {});
-  ASSERT_EQ(guides.size(), 5u);
-  for (std::size_t k = 0; k < 5; ++k) {
-    EXPECT_NEAR(guides[k].in.at.x(), (static_cast<double>(k) - 2.0) * 4e-3 / 6.0, 1e-9);
+  NeedleTask ten = task("ten-stitches");
+  ten.lapses = {};
+  const auto guides = stitch_guides(t, needle(), ten);
+  ASSERT_EQ(guides.size(), 10u);
+  for (std::size_t k = 0; k < 10; ++k) {
+    EXPECT_NEAR(guides[k].in.at.x(), (static_cast<double>(k) - 4.5) * 4e-3 / 11.0, 1e-9);
     EXPECT_NEAR(guides[k].in.at.y(), -0.4e-3, 1e-9);
     EXPECT_NEAR(guides[k].out.at.y(), 0.4e-3, 1e-9);
     EXPECT_NEAR(guides[k].in.at.z(), 0.075e-3, 1e-9);
   }
 }
 
-TEST(StitchGuide, NothingWithoutTissueOrNeedle) {
-  EXPECT_TRUE(stitch_guides({}, needle(), {}).empty());
-  EXPECT_TRUE(stitch_guides(vessel(), {}, {}).empty());
+/// Stays at 120 degrees, not where eight stitches would lie.
+TEST(StitchGuide, FollowsTheStitchesOfItsTask) {
+  const TissueDescription t = vessel();
+  const auto guides = stitch_guides(t, needle(), task("triangulation-120"));
+  ASSERT_EQ(guides.size(), 6u);
+  const auto outward = [&](const StitchGuide& g) {
+    const Vec3 r = g.in.at - t.middle;
+    return Vec3((r - r.dot(t.axis) * t.axis).normalized());
+  };
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < a; ++b) EXPECT_NEAR(outward(guides[a]).dot(outward(guides[b])), -0.5, 1e-9);
+  EXPECT_EQ(stitch_guides(t, needle(), task("artery-two-stitches")).size(), 2u);
+}
+
+TEST(StitchGuide, NothingWithoutTissueNeedleOrPlaces) {
+  EXPECT_TRUE(stitch_guides({}, needle(), task("anastomosis-8")).empty());
+  EXPECT_TRUE(stitch_guides(vessel(), {}, task("anastomosis-8")).empty());
+  EXPECT_TRUE(stitch_guides(vessel(), needle(), task("vessel-handling")).empty());
 }
 
 }  // namespace stitch_guide_test
