@@ -7,6 +7,8 @@
 // Tool N carries marker N; the pose sent is that of the tip, in the frame of marker 3 on the table (--field) or the camera's.
 #include <CLI/CLI.hpp>
 #include <array>
+#include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -28,6 +30,11 @@ namespace {
 using namespace filum;
 
 constexpr int kFieldMarker = 3;  // flat on the table, x to the right, y away from the trainee
+
+std::atomic<bool> quit{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void on_signal(int) { quit.store(true); }
 
 struct Options {
   std::string out, pictures, camera, source = "0", log;
@@ -95,7 +102,9 @@ int track(const Options& o) {
   std::optional<PoseLog> log;
   if (!o.log.empty()) log.emplace(o.log);
   FieldFrame field;
-  for (cv::Mat grey; next_picture(source, camera, grey);) {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  for (cv::Mat grey; !quit && next_picture(source, camera, grey);) {
     const std::vector<MarkerPose> seen = tracker.find(grey);
     for (const MarkerPose& pose : seen)
       if (pose.tool == kFieldMarker) field.take(pose.X_CT);
@@ -107,6 +116,7 @@ int track(const Options& o) {
       if (log) log->add(source.seconds(), pose, X);
     }
   }
+  if (log) log->close();
   print_counts(tracker.counts());
   if (o.field) std::printf("field: spread of its marker %.2f mm, measured again %d times\n", 1e3 * field.spread(), field.times_lost());
   return 0;
@@ -158,7 +168,11 @@ int main(int argc, char** argv) {
   guiding->add_option("--folder", o.guide.folder, "For the preview and the calibration")->required();
   guiding->add_option("--name", o.guide.camera, "Name of the camera");
   guiding->add_option("--square", o.guide.square, "Side of a square [mm]")->check(CLI::Range(1.0, 200.0));
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   try {
     if (sheet->parsed()) write(o.out, marker_sheet_svg({0, 1, 2, 3}, o.side));
     if (calibration->parsed()) return calibrate(o);

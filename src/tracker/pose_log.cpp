@@ -2,13 +2,14 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "base/file_kind.h"
 
 namespace filum {
 
-PoseLog::PoseLog(const std::string& path) {
+PoseLog::PoseLog(const std::string& path) : path_(path) {
   if (is_there(path)) throw InputError("--log", "file", path, "a file that does not exist yet");
   file_.open(path);
   file_ << "time_s,tool,marker,x_m,y_m,z_m,qw,qx,qy,qz,residual_px";
@@ -29,6 +30,18 @@ void PoseLog::add(double time, const MarkerPose& pose, const Pose& X) {
       file_ << text;
     }
   file_ << "\n";
+  file_.flush();
+  require_written();
+}
+
+void PoseLog::close() {
+  file_.close();
+  require_written();
+}
+
+/// A full disk is no fault of what was asked for, hence no InputError.
+void PoseLog::require_written() const {
+  if (!file_) throw std::runtime_error(path_ + ": poses: found a write error, expected a disk with space left");
 }
 
 }  // namespace filum

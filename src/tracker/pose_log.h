@@ -13,10 +13,14 @@ class PoseLog {
  public:
   /// Throws InputError for a file that exists or cannot be written.
   explicit PoseLog(const std::string& path);
-  /// `X`: the pose that was sent.
+  /// `X`: the pose that was sent. In the file when this returns: whatever ends the program, nothing is lost. Throws where the disk is full.
   void add(double time, const MarkerPose& pose, const Pose& X);
+  /// Throws where the file does not end well.
+  void close();
 
  private:
+  void require_written() const;
+  std::string path_;
   std::ofstream file_;
 };
 

@@ -52,4 +52,31 @@ refused 2 "--source" "$camera" track --camera "$work/folder.yaml" --source "$wor
 refused 2 "fx" "$camera" track --camera "$work/negative.yaml" --source 0 --port 18977
 refused 2 "poses" "$camera" pivot --camera "$work/folder.yaml" --source "$work/pictures/view_%03d.png"
 refused 2 "--source" "$camera" guide --source "$work/none.avi" --folder "$work/made"
+
+# Bad arguments are bad input; help is none.
+refused 2 "--side" "$camera" sheet --out "$work/sheet.svg" --side 1000
+refused 2 "subcommand" "$camera"
+"$camera" track --help >"$work/out" || fail "help ended with $?"
+
+# A log is whole up to the picture at which it is ended, and the counts are told.
+mkdir "$work/many"
+for ((n = 0; n < 6000; ++n)); do ln -s ../pictures/marker.png "$work/many/m_$(printf %04d "$n").png"; done
+rows() { if [[ -e $1 ]]; then wc -l <"$1"; else echo 0; fi; }
+for signal in INT TERM; do
+  log=$work/$signal.csv
+  "$camera" track --camera "$work/folder.yaml" --source "$work/many/m_%04d.png" --log "$log" --port 18978 >"$work/out" 2>"$work/err" &
+  tracker=$!
+  for ((n = 0; n < 300 && $(rows "$log") < 4; ++n)); do sleep 0.1; done
+  kill -"$signal" "$tracker"
+  code=0
+  wait "$tracker" || code=$?
+  [[ $code -eq 0 ]] || fail "ended by $signal with $code: $(cat "$work/err")"
+  [[ $(rows "$log") -lt 6001 ]] || fail "$signal was not heard"
+  poses=$(sed -n 's/^[0-9]* pictures, \([0-9]*\) poses.*/\1/p' "$work/out")
+  [[ $poses -gt 0 && $(rows "$log") -eq $((poses + 1)) ]] || fail "$signal: $(rows "$log") lines of \"$poses\" poses: $(cat "$work/out")"
+  [[ $(tail -1 "$log" | tr -cd , | wc -c) -eq 31 ]] || fail "$signal: the last line is cut: $(tail -1 "$log")"
+done
+# A full disk is a failure, and told.
+full() { (trap '' XFSZ; ulimit -f 4; exec "$camera" track --camera "$work/folder.yaml" --source "$work/many/m_%04d.png" --log "$work/full.csv" --port 18978); }
+refused 1 "space left" full
 echo "guide_test: all as expected"

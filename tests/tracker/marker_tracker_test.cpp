@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "tests/tracker/marker_views.h"
 #include "tests/tracker/rendered.h"
 #include "tracker/marker_sheet.h"
 #include "tracker/pose_log.h"
@@ -21,18 +22,6 @@ namespace filum {
 namespace marker_tracker_test {
 
 constexpr double kSide = 12e-3;  // [m]
-
-/// The marker with its white rim of two cells, 24 pixels a cell.
-cv::Mat picture_of(int marker) {
-  constexpr int kCell = 24;
-  cv::Mat picture(10 * kCell, 10 * kCell, CV_8U, cv::Scalar(255));
-  const auto cells = marker_cells(marker);
-  for (int r = 0; r < 6; ++r)
-    for (int c = 0; c < 6; ++c)
-      if (cells[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)])
-        picture(cv::Rect((c + 2) * kCell, (r + 2) * kCell, kCell, kCell)).setTo(20);
-  return picture;
-}
 
 /// Facing the camera, tilted about a slanting axis.
 Pose marker_at(double distance, double tilt, double x = 0.004, double y = -0.003) {

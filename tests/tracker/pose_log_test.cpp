@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/refusal.h"
+#include "tests/session/disk_limit.h"
 
 namespace filum {
 namespace pose_log_test {
@@ -105,6 +106,27 @@ TEST_F(PoseLogTest, EachPoseHasALineOfItsOwnInTurn) {
     EXPECT_NEAR(row[0], 0.04 * k, 1e-9);
     EXPECT_NEAR(row[3], 1e-3 * k, 1e-9);
     EXPECT_NEAR(row[10], 0.01 * k, 1e-9);
+  }
+}
+
+TEST_F(PoseLogTest, WhatWasAddedIsInTheFileBeforeTheLogEnds) {
+  PoseLog log(path_);
+  log.add(0.0, seen(), {});
+  log.add(0.04, seen(), {});
+  EXPECT_EQ(lines().size(), 3u) << "the program may be killed";
+}
+
+TEST_F(PoseLogTest, AFullDiskIsSaidWithTheFilesName) {
+  PoseLog log(path_);
+  const DiskLimit full(4096);
+  try {
+    for (int k = 0; k < 100; ++k) log.add(0.04 * k, seen(), {});
+    FAIL() << "a hundred rows in 4096 bytes";
+  } catch (const InputError& error) {
+    ADD_FAILURE() << "no bad input: " << error.what();
+  } catch (const std::exception& error) {
+    EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("space left"), std::string::npos) << error.what();
   }
 }
 
