@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "devices/sample_check.h"
 #include "devices/sample_faults.h"
 
 namespace filum {
@@ -9,7 +10,6 @@ namespace {
 
 constexpr double kLengthUnit = 1e-7;  // [m]
 constexpr double kQuaternionUnit = 1.0 / (1 << 30);
-constexpr double kReach = 0.2;                      // [m]
 constexpr std::int64_t kClockMayRunBack = 100'000;  // [us], more is a restart
 constexpr std::int64_t kClockMayLeap = 60'000'000;  // [us], of frames that come late; more is a restart: a clock begun anew seems ahead of one past half its range
 constexpr std::int64_t kForgetAfter = 1'000'000;    // [us], a silent device gives up its place
@@ -42,7 +42,7 @@ std::optional<Pose> pose_of(const filum_pose& pose) noexcept {
   for (int i = 0; i < 3; ++i) X.p[i] = pose.position[i] * kLengthUnit;
   const std::int32_t* w = pose.quaternion;
   X.q = Quat(w[0] * kQuaternionUnit, w[1] * kQuaternionUnit, w[2] * kQuaternionUnit, w[3] * kQuaternionUnit);
-  if (X.p.cwiseAbs().maxCoeff() > kReach || std::abs(X.q.norm() - 1.0) > 0.01) return std::nullopt;
+  if (X.p.cwiseAbs().maxCoeff() > kHandReach || std::abs(X.q.norm() - 1.0) > 0.01) return std::nullopt;
   X.q.normalize();
   return X;
 }

@@ -12,13 +12,13 @@
 #include <numbers>
 
 #include "base/error.h"
+#include "devices/sample_check.h"
 
 namespace filum {
 namespace {
 
 constexpr double kLengthUnit = 1e-7;  // [m]
 constexpr double kQuaternionUnit = 1.0 / (1 << 30);
-constexpr double kReach = 0.5;        // [m]
 constexpr int kPerPoll = 64;          // packets; three tools at 1 kHz are three
 
 std::int32_t whole(double value) noexcept {
@@ -59,7 +59,7 @@ bool sample_of(const filum_link_pose& pose, DeviceSample& sample) noexcept {
   sample.grip_angle = 1e-6 * pose.grip_angle;
   sample.has_grip_force = (pose.flags & FILUM_LINK_HAS_FORCE) != 0;
   sample.grip_force = sample.has_grip_force ? 1e-6 * pose.grip_force : 0.0;
-  if (sample.X_WD.p.cwiseAbs().maxCoeff() > kReach || std::abs(sample.X_WD.q.norm() - 1.0) > 0.01) return false;
+  if (sample.X_WD.p.cwiseAbs().maxCoeff() > kHandReach || std::abs(sample.X_WD.q.norm() - 1.0) > 0.01) return false;
   if (std::abs(sample.grip_angle) > std::numbers::pi / 2 || sample.grip_force < 0.0 || sample.grip_force > 50.0) return false;
   sample.X_WD.q.normalize();
   sample.has_pose = sample.has_grip_angle = true;

@@ -10,10 +10,10 @@
 #include <igtl_transform.h>
 #include <igtl_util.h>
 
+#include "devices/sample_check.h"
+
 namespace filum {
 namespace {
-
-constexpr double kReach = 0.5;  // [m]
 
 static_assert(sizeof(::igtl_header) == kIgtlHeader && sizeof(igtl_tdata_element) == kIgtlElement);
 
@@ -55,7 +55,7 @@ IgtlPose igtl_pose(std::string_view name, const std::uint8_t* bytes) noexcept {
   Mat3 R;
   for (int i = 0; i < 9; ++i) R(i % 3, i / 3) = static_cast<double>(v[i]);
   pose.X.p = 1e-3 * Vec3(v[9], v[10], v[11]);
-  if (!R.allFinite() || !pose.X.p.allFinite() || pose.X.p.cwiseAbs().maxCoeff() > kReach) return pose;
+  if (!R.allFinite() || !pose.X.p.allFinite() || pose.X.p.cwiseAbs().maxCoeff() > kHandReach) return pose;
   if (!((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff() < 0.01) || R.determinant() < 0.0) return pose;
   pose.X.q = Quat(R).normalized();
   pose.sound = true;

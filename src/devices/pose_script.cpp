@@ -35,7 +35,7 @@
 namespace filum {
 namespace {
 
-constexpr double kReach = 0.2;            // [m], as far from the origin as any device may report
+constexpr double kReach = 0.2;            // [m], from the origin: what is farther was written by mistake
 constexpr double kTurnsTolerance = 0.02;  // arc.turns and p must agree to this; then p decides
 
 std::uint32_t read_buttons(const YamlNode& node) {

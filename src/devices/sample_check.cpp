@@ -6,7 +6,6 @@
 namespace filum {
 namespace {
 
-constexpr double kReach = 0.2;  // [m]
 constexpr double kUnitTolerance = 0.01;
 constexpr double kAngleLimit = std::numbers::pi;  // [rad]
 constexpr double kForceLimit = 50.0;              // [N]
@@ -17,7 +16,7 @@ SampleFault fault_of(const DeviceSample& sample) noexcept {
   if (sample.tool < 0 || sample.tool >= kMaxTools) return SampleFault::wrong_tool;
   if (sample.has_pose) {
     if (!sample.X_WD.finite()) return SampleFault::not_finite;
-    if (sample.X_WD.p.cwiseAbs().maxCoeff() > kReach) return SampleFault::out_of_range;
+    if (sample.X_WD.p.cwiseAbs().maxCoeff() > kHandReach) return SampleFault::out_of_range;
     if (std::abs(sample.X_WD.q.norm() - 1.0) > kUnitTolerance) return SampleFault::out_of_range;
   }
   if (sample.has_grip_angle) {

@@ -6,6 +6,10 @@
 
 namespace filum {
 
+/// [m], of each coordinate: of a hand as its device reports it, and of a tool in the scene. One for all devices, so that what one lets
+/// through is not thrown away later.
+inline constexpr double kHandReach = 0.5;
+
 enum class SampleFault { none, not_finite, out_of_range, wrong_tool };
 
 /// Looks at the values that are marked present only.

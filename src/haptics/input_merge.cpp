@@ -58,14 +58,17 @@ Inputs InputMerge::inputs(std::int64_t now_us) noexcept {
     input.buttons = 0;
     for (const auto& buttons : tool.buttons)
       if (buttons.holds(now_us)) input.buttons |= buttons.value;
-    input.has_grip_force = input.valid && tool.force.holds(now_us);
-    input.grip_force = input.has_grip_force ? tool.force.value : 0.0;
     if (input.valid) {
       const Pose& hand = tool.X_WD.value;
       const Pose scaled{scale_.centre + scale_.factor * hand.p, hand.q};
-      input.X_WD = through_clutch(tool, scale_.factor == 1.0 && scale_.centre.isZero() ? hand : scaled, (input.buttons & kClutch) != 0);
-      if (tool.measures_angle) input.grip_angle = tool.angle.value;
+      const Pose X = through_clutch(tool, scale_.factor == 1.0 && scale_.centre.isZero() ? hand : scaled, (input.buttons & kClutch) != 0);
+      // Scaled up, or carried on by the clutch again and again: a tool that would be out of reach has no input until it is back.
+      input.valid = X.p.cwiseAbs().maxCoeff() <= kHandReach;
+      if (input.valid) input.X_WD = X;
+      if (input.valid && tool.measures_angle) input.grip_angle = tool.angle.value;
     }
+    input.has_grip_force = input.valid && tool.force.holds(now_us);
+    input.grip_force = input.has_grip_force ? tool.force.value : 0.0;
     inputs.tools[i] = input;
   }
   return inputs;

@@ -29,8 +29,8 @@ class InputMerge {
   void take(const DeviceSample& sample, int source, std::int64_t stale_after_us) noexcept;
   /// The device is gone: nothing it said is true any more.
   void drop(int source) noexcept;
-  /// Commands at time now_us [us]. A tool is valid while it has a pose and, if its opening was ever measured,
-  /// an opening.
+  /// Commands at time now_us [us]. A tool is valid while it has a pose within reach in the scene (sample_check.h)
+  /// and, if its opening was ever measured, an opening.
   Inputs inputs(std::int64_t now_us) noexcept;
 
  private:

@@ -71,6 +71,17 @@ TEST(ReplayDevice, LeavesOutWhatCannotBe) {
   EXPECT_EQ(device.health().rejected, 2u);
 }
 
+TEST(ReplayDevice, AHandAsFarAsADeviceMayReportItIsPlayed) {
+  auto samples = recorded(2, 1000);
+  samples[0].X_WD.p = {0.45, -0.3, 0.25};
+  samples[1].X_WD.p.x() = 0.51;
+  ReplayDevice device("replay", samples);
+  std::vector<DeviceSample> out;
+  device.poll(10'000, out);
+  EXPECT_EQ(out.size(), 1u);
+  EXPECT_EQ(device.health().rejected, 1u);
+}
+
 TEST(ReplayDevice, AnEmptyRecordingIsOverAtOnce) {
   ReplayDevice device("replay", {});
   std::vector<DeviceSample> out;

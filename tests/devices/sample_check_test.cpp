@@ -27,7 +27,8 @@ TEST(SampleCheck, RefusesWhatCannotBe) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(with([&](auto& s) { s.X_WD.p[i] = nan; }), SampleFault::not_finite);
     EXPECT_EQ(with([&](auto& s) { s.X_WD.p[i] = -infinite; }), SampleFault::not_finite);
-    EXPECT_EQ(with([&](auto& s) { s.X_WD.p[i] = 0.21; }), SampleFault::out_of_range);
+    EXPECT_EQ(with([&](auto& s) { s.X_WD.p[i] = 0.51; }), SampleFault::out_of_range);
+    EXPECT_EQ(with([&](auto& s) { s.X_WD.p[i] = -0.49; }), SampleFault::none);
   }
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(with([&](auto& s) { s.X_WD.q.coeffs()[i] = nan; }), SampleFault::not_finite);

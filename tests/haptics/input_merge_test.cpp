@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
+
+#include "devices/haptic_link.h"
 
 namespace filum {
 namespace input_merge_test {
@@ -134,6 +138,45 @@ TEST(InputMerge, NaNNeverReachesTheWorld) {
   const ToolInput tool = merge.inputs(10).tools[0];
   EXPECT_TRUE(tool.valid);
   EXPECT_EQ(tool.X_WD.p.x(), 1e-3);
+}
+
+/// Poses that a link and a tracker let through: what they count as received is not thrown away here.
+TEST(InputMerge, AHandAsFarAsADeviceMayReportItMovesTheTool) {
+  for (const double factor : {1.0, 0.1}) {
+    InputMerge merge({factor, Vec3::Zero()});
+    DeviceSample linked;
+    ASSERT_TRUE(sample_of(link_pose(0, {{0.45, -0.3, 0.25}, Quat::Identity()}, 0.1, 0.0, FILUM_LINK_TRACKED), linked));
+    merge.take(linked, 0, kStale);
+    const ToolInput tool = merge.inputs(0).tools[0];
+    ASSERT_TRUE(tool.valid) << factor;
+    EXPECT_LT((tool.X_WD.p - factor * Vec3(0.45, -0.3, 0.25)).norm(), 1e-7);
+  }
+}
+
+TEST(InputMerge, AToolThatWouldBeOutOfTheScenesReachHasNoInput) {
+  InputMerge merge({10.0, Vec3::Zero()});
+  merge.take(pose(0, {0.04, 0, 0}), 0, kStale);
+  EXPECT_TRUE(merge.inputs(0).tools[0].valid);
+  merge.take(pose(1000, {0.06, 0, 0}), 0, kStale);
+  const ToolInput away = merge.inputs(1000).tools[0];
+  EXPECT_FALSE(away.valid) << "0.6 m away in the scene";
+  EXPECT_EQ(away.X_WD.p.x(), 0.4);
+  merge.take(pose(2000, {0.03, 0, 0}), 0, kStale);
+  EXPECT_TRUE(merge.inputs(2000).tools[0].valid);
+}
+
+TEST(InputMerge, TheClutchDoesNotCarryAToolOutOfReach) {
+  InputMerge merge;
+  std::int64_t now = 0;
+  ToolInput tool;
+  for (int stroke = 0; stroke < 10; ++stroke) {  // along by 0.1 m, back with the clutch held
+    for (const auto& [x, buttons] : std::vector<std::pair<double, std::uint32_t>>{{0.0, 0}, {0.1, 0}, {0.1, 1}, {0.0, 1}}) {
+      merge.take(pose(now += 1000, {x, 0, 0}, Quat::Identity(), buttons), 0, kStale);
+      tool = merge.inputs(now).tools[0];
+      ASSERT_LE(tool.X_WD.p.x(), 0.5) << stroke;
+    }
+  }
+  EXPECT_FALSE(tool.valid);
 }
 
 TEST(InputMerge, TheClutchHoldsTheToolAndLetsGoWithoutAJump) {
