@@ -49,6 +49,14 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut,
   return s;
 }
 
+/// [rad], between where pass k came into the lumen and where the next one left it; 0 if they are no such two.
+double turn_through_lumen(const TissueObservation& t, int k, const CutLine& cut) {
+  if (k < 0 || k + 1 >= t.n_passes) return 0.0;
+  const PassObservation &in = t.passes[static_cast<std::size_t>(k)], &out = t.passes[static_cast<std::size_t>(k + 1)];
+  if (!in.out || in.exit_depth < 0.5 || out.entry_depth < 0.5) return 0.0;
+  return cut.round_lumen({in.exit_rest, in.side}, {out.entry_rest, out.side});
+}
+
 const std::vector<std::string> kLapses = {"oblique", "wide-bite", "partial-thickness", "unequal-spacing", "back-wall", "loose-knot", "too-tight",
                                           "wall-tear", "thread-in-lumen", "disrupted-line", "edge-overlap"};
 
@@ -94,14 +102,20 @@ LapseRules load_lapse_rules(const std::string& path) {
   return r;
 }
 
-std::vector<Stitch> stitches_of(const TissueObservation& t, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
-                                const TissueDescription& scene) {
+std::vector<Stitch> stitches_of(const LapseRules& rules, const TissueObservation& t, const std::vector<std::array<int, 2>>& pairs,
+                                const std::vector<double>& pass_time, const TissueDescription& scene) {
   const CutLine cut(scene);
   std::vector<Stitch> stitches;
   for (int k = 0; k < t.n_passes; ++k) {
     if (!t.passes[static_cast<std::size_t>(k)].out) continue;
     if (std::any_of(pairs.begin(), pairs.end(), [k](const auto& pair) { return pair[1] == k; })) continue;
     const auto pair = std::find_if(pairs.begin(), pairs.end(), [k](const auto& one) { return one[0] == k; });
+    const auto came_in = std::find_if(stitches.begin(), stitches.end(), [k](const Stitch& s) { return std::max(s.first, s.second) == k - 1; });
+    if (scene.lumen && pair == pairs.end() && came_in != stitches.end() && turn_through_lumen(t, k - 1, cut) > rules.back_wall) {
+      came_in->torn = std::max(came_in->torn, t.passes[static_cast<std::size_t>(k)].torn);
+      came_in->peak_force = std::max(came_in->peak_force, t.passes[static_cast<std::size_t>(k)].peak_force);
+      continue;
+    }
     stitches.push_back(from_passes(t, k, pair == pairs.end() ? -1 : (*pair)[1], cut, scene));
     const auto last = static_cast<std::size_t>(std::max(k, stitches.back().second));
     if (last < pass_time.size()) stitches.back().time = pass_time[last];
@@ -165,9 +179,7 @@ void find_back_walls(const LapseRules& rules, const TissueObservation& t, const 
   if (!scene.lumen) return;
   const CutLine cut(scene);
   for (int k = 0; k + 1 < t.n_passes; ++k) {
-    const PassObservation &in = t.passes[static_cast<std::size_t>(k)], &out = t.passes[static_cast<std::size_t>(k + 1)];
-    if (!in.out || in.exit_depth < 0.5 || out.entry_depth < 0.5) continue;  // not through the lumen
-    const double turn = cut.round_lumen({in.exit_rest, in.side}, {out.entry_rest, out.side});
+    const double turn = turn_through_lumen(t, k, cut);
     if (turn <= rules.back_wall) continue;
     const auto of = std::find_if(stitches.begin(), stitches.end(), [&](const Stitch& s) { return s.first == k || s.second == k; });
     const double time = static_cast<std::size_t>(k) < pass_time.size() ? pass_time[static_cast<std::size_t>(k)] : 0.0;

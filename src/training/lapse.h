@@ -71,8 +71,9 @@ struct Lapse {
 
 /// How many there are of this name.
 double count_of(const std::vector<Lapse>& lapses, std::string_view name);
-/// `pairs`: passes of the stitches. All other passes that came out stand alone.
-std::vector<Stitch> stitches_of(const TissueObservation& tissue, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
+/// `pairs`: passes of the stitches. All other passes that came out stand alone, except the needle's way on through the back wall: it is part of the stitch
+/// with which the needle came into the lumen, and that lapse, but no bite that was meant.
+std::vector<Stitch> stitches_of(const LapseRules& rules, const TissueObservation& tissue, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
                                 const TissueDescription& scene);
 /// [m], from each stitch along the cut to the next, round a vessel from the last to the first; NaN of one that was lost or has none.
 std::vector<double> ways_to_next(const std::vector<Stitch>& stitches, const TissueDescription& scene);

@@ -271,7 +271,7 @@ NeedleReport NeedleWatch::report(const std::optional<JoinReport>& join, const Ob
   if (!r.has_tissue) return r;
   r.thickness = scene_.tissue.thickness;
   if (scene_.tissue.lumen) r.round = 2.0 * std::numbers::pi * CutLine(scene_.tissue).radius();
-  r.stitches = stitches_of(tissue_, order_.pairs().with_needle(tissue_), pass_time_, scene_.tissue);
+  r.stitches = stitches_of(task_.lapses, tissue_, order_.pairs().with_needle(tissue_), pass_time_, scene_.tissue);
   for (Stitch& s : r.stitches) {
     s.tear_time = std::fmin(tear_time_[static_cast<std::size_t>(s.first)], s.second < 0 ? kNaN : tear_time_[static_cast<std::size_t>(s.second)]);
     if (last != nullptr) name_tension(*last, s);

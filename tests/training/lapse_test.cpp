@@ -48,7 +48,7 @@ Observation seen(const TissueObservation& t) {
 std::vector<Stitch> stitches_in(const TissueObservation& t, const TissueDescription& scene, const std::vector<double>& times = {}) {
   StitchPairs pairs;
   pairs.observe(seen(t));
-  return stitches_of(t, pairs.with_needle(t), times, scene);
+  return stitches_of(LapseRules(), t, pairs.with_needle(t), times, scene);
 }
 
 std::vector<Lapse> lapses(const TissueObservation& t, const TissueDescription& scene = card(), bool complete = false) {
@@ -195,6 +195,8 @@ TEST(Lapse, BackWallOfATube) {
   EXPECT_TRUE(tube_lapses({bite(0, 1.5, -0.3e-3, true), bite(1, 1.55, 0.3e-3, false)}).empty());
   const auto caught = tube_lapses({bite(0, 1.5, -0.3e-3, true), bite(0, -1.4, -0.3e-3, false)});
   EXPECT_TRUE(has(caught, "back-wall")) << "out through the far side of the same stump";
+  EXPECT_EQ(tube_lapses({bite(0, 1.5, -0.5e-3, true), bite(0, -1.4, -0.5e-3, false)}).size(), 2u) << "one wide bite and the back wall: the way on is no bite of its own";
+  EXPECT_FALSE(has(tube_lapses({bite(0, 1.0, -0.3e-3, true), bite(1, 1.0, 0.3e-3, false), bite(0, 1.5, -0.3e-3, true), bite(0, -1.4, -0.3e-3, false)}), "unequal-spacing"));
   const auto across = tube_lapses({bite(0, 1.5, -0.3e-3, true), bite(1, -1.4, 0.3e-3, false)});
   ASSERT_TRUE(has(across, "back-wall"));
   for (const Lapse& l : across)
@@ -293,7 +295,7 @@ TEST(Lapse, OnlyThreadThroughBothSidesJoins) {
   StitchPairs pairs;
   pairs.observe(seen(t));
   t.passes[3].state = PassObservation::State::torn;  // after the stitch was made
-  const auto s = stitches_of(t, pairs.with_needle(t), {}, card());
+  const auto s = stitches_of(LapseRules(), t, pairs.with_needle(t), {}, card());
   ASSERT_EQ(s.size(), 3u);
   EXPECT_TRUE(s[0].joins);
   EXPECT_FALSE(s[1].joins) << "one side torn out";
