@@ -14,7 +14,7 @@ namespace {
 constexpr double kSwage = 2e4;         // [N/m], of the joint between needle and thread
 constexpr double kTroubleForce = 1e-4;  // [N], imbalance worth reporting
 constexpr double kApart = 20e-6;        // [m], between thread and needle: at kSwage 0.4 N, as much as a thread of 10-0 bears
-constexpr double kSinks = 10e-6;        // [m], of thread into tissue in a step: 5 mm/s
+constexpr double kSinks = 10e-6;        // [m], of thread or a loose needle into tissue in a step: 5 mm/s
 constexpr double kHeldApart = 15e-6;    // [m]: a thread of 10-0 that is torn off by 0.2 N breaks before
 constexpr double kClosing = 1e-3;       // [rad/s], of jaws that close
 constexpr int kMostCatches = 4;         // times that a step is made again because it took thread through tissue
@@ -186,9 +186,9 @@ RodStepSummary NeedleScene::attempt(State& s, ImplicitRod& rod, const RodStepOpt
   return thread;
 }
 
-/// Above one: no thread bears what the step left unbalanced or what tears it off its needle, or it goes through tissue at more than kSinks, deeper than that pushes back.
+/// Above one: no thread bears what the step left unbalanced or what tears it off its needle, or it or a loose needle goes through tissue at more than kSinks, deeper than that pushes back.
 double NeedleScene::overload(const State& s, const RodStepSummary& thread) const noexcept {
-  const double through = tissue_ ? tissue_->sinks(s.tissue, s.thread) : 0.0;
+  const double through = tissue_ ? tissue_->sinks(s.tissue, s.thread, s.needle.X_WN, s.needle.in_hand()) : 0.0;
   return std::max({thread.residual / model_.thread.strength, apart(s) / kHeldApart, through / kSinks});
 }
 

@@ -45,6 +45,7 @@ void slide_touch(SurfaceTouch& touch, const TouchFooting& footing) noexcept;
 WallCrossing meet_surface(const VesselWall& wall, const WallState& w, const Vec3& before, const Vec3& now) noexcept;
 
 inline constexpr double kDeepest = 30e-6;      // [m], overlap from which the force grows no more: what has gone deeper is drawn back by a softer spring, but all the way
+inline constexpr double kThrough = 50e-6;      // [m], half a wall: as far as a strand goes in a step at 25 mm/s
 inline constexpr double kOneTouch = 35e-6;     // [m], of thread that one touch stands for, either way
 inline constexpr double kTrackReach = 0.3e-3;  // [m], of a strand on either side of a track that is left alone
 

@@ -10,7 +10,6 @@ namespace filum {
 namespace {
 
 constexpr double kSpacing = 0.1e-3;     // [m], of samples along the thread at most: less than a wall is thick
-constexpr double kThrough = 50e-6;      // [m], half a wall: as much thread goes in a step at 25 mm/s
 constexpr double kBeside = 0.2e-3;      // [m], of thread on either side of what is deep that comes out with it
 constexpr double kOpposite = 0.3;       // [1], cosine, of a face against the way back
 constexpr double kJustAbove = 1e-6;     // [m], from where one looks

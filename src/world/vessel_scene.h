@@ -1,6 +1,7 @@
 #pragma once
 // The tissue of a scene and the needle's and thread's ways through it: what it holds them by, what they do to it, its own step.
 
+#include <algorithm>
 #include <memory>
 
 #include "physics/implicit_rod.h"
@@ -27,8 +28,10 @@ class VesselScene {
   void hold(const VesselState& s, const Pose& X_WN, bool held, const RodState& thread, std::vector<RodTether>& on_needle, std::vector<RodTether>& on_thread) noexcept;
   /// Has the thread's step taken it through the tissue? Then it is to be made again, with what has come onto `on_thread`.
   bool catches(VesselState& s, const RodState& thread, std::vector<RodTether>& on_thread) const noexcept { return contact_.catches(wall_, s.wall, s.touches, s.tracks, thread, on_thread); }
-  /// [m], by which it has taken it on through tissue that pushes back no harder.
-  double sinks(const VesselState& s, const RodState& thread) const noexcept { return contact_.sinks(wall_, s.wall, s.touches, thread); }
+  /// [m], by which it has taken thread, or a loose needle to X_WN, on through tissue that pushes back no harder.
+  double sinks(const VesselState& s, const RodState& thread, const Pose& X_WN, bool held) const noexcept {
+    return std::max(contact_.sinks(wall_, s.wall, s.touches, thread), held ? 0.0 : wire_.sinks(wall_, s.wall, s.wire, X_WN));
+  }
   /// The clamp's buttons: `next` (4) turns it over and back, or to the next of the scene's turns, `cut` (2) slides it while it is held down, the other way at each press. The tissue's
   /// step then carries the stumps along. 8 and 16 take the upstream and the downstream clamp off; then it moves no more.
   void handle_clamp(VesselState& s, std::uint32_t buttons, Observation& o) const noexcept;

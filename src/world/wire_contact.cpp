@@ -46,6 +46,16 @@ RodTether WireContact::felt(const SurfaceTouch& touch, const Vec3& x) const noex
   return t;
 }
 
+double WireContact::sinks(const VesselWall& wall, const WallState& w, const TouchState& s, const Pose& X_WN) const noexcept {
+  double most = 0.0;
+  for (int k = 0; k < s.n; ++k) {
+    const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
+    const Vec3 p_N = needle_.point(touch.arc), now = X_WN * p_N;
+    if ((wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough) most = std::max(most, (before_ * p_N - now).dot(touch.normal));
+  }
+  return most;
+}
+
 void WireContact::find_shares(const TrackState& tracks) noexcept {
   share_.fill(1.0);
   for (int i = 0; i < tracks.n; ++i) {

@@ -28,6 +28,8 @@ class WireContact {
   /// Before the needle moves from X_WN: what the surface holds it by; `held`: a hand holds it.
   void hold(const VesselWall& wall, const WallState& w, const TouchState& s, const TrackState& tracks, const Pose& X_WN, bool held,
             std::vector<RodTether>& on_needle) noexcept;
+  /// [m], by which a step to X_WN takes a loose needle on where it is too deep for the wall to push back any harder; at most.
+  double sinks(const VesselWall& wall, const WallState& w, const TouchState& s, const Pose& X_WN) const noexcept;
   /// After it has moved to X_WN: loads on the wall, and what it has come upon.
   void follow(VesselWall& wall, const WallState& w, TouchState& s, const TrackState& tracks, const Pose& X_WN, bool held,
               const std::vector<RodTether>& on_needle) noexcept;

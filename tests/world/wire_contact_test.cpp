@@ -178,6 +178,24 @@ TEST(WireContact, LooseItLiesOnTheVessel) {
   EXPECT_LT(d.overlap(), 0.1 * d.body.shape().wire_radius);
 }
 
+/// Told of a needle that is deeper than half a wall and goes on; not of one on its way out, nor where the wall pushes it back.
+TEST(WireContact, ALooseNeedleThatIsPressedThroughTheWallIsTold) {
+  const auto told = [](double depth, double sinks) {
+    Laid d(0.0);
+    const double down = d.body.shape().wire_radius + depth - sinks;  // of its axis below the top
+    d.needle.X_WN.p.y() -= down;
+    const WallCrossing top = d.wall.crossing(d.w, Vec3(0, 2.0 * kRadius, 1.5e-3), Vec3(0, 0, 1.5e-3));
+    d.touches.touches[0] = {0.5 * d.body.shape().length(), top.point, top.normal, 0.0, Vec3::Zero(), 0.0};
+    d.touches.n = 1;
+    d.contact.hold(d.wall, d.w, d.touches, d.tracks, d.needle.X_WN, false, d.body.tethers);
+    d.needle.X_WN.p.y() -= sinks;
+    return d.contact.sinks(d.wall, d.w, d.touches, d.needle.X_WN);
+  };
+  EXPECT_NEAR(told(60e-6, 12e-6), 12e-6, 0.2e-6) << "faces lie askew by five degrees";
+  EXPECT_EQ(told(60e-6, -30e-6), 0.0) << "on its way out";
+  EXPECT_EQ(told(40e-6, 12e-6), 0.0) << "where the wall pushes it back";
+}
+
 /// The wall comes upon a needle at rest: at half a metre a second, past it in one step, or so slowly that it only comes to lie beside it.
 TEST(WireContact, AWallThatComesUponItIsNoticed) {
   Laid d(20e-6);
