@@ -30,8 +30,8 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut,
   s.bite[0] = std::abs(p.bite_entry);
   s.bite[1] = whole ? std::abs(q.bite_exit) : std::numeric_limits<double>::quiet_NaN();
   s.entry_angle = p.entry_angle;
-  s.exit_angle = q.exit_angle;
-  const CutPlace in{p.entry_rest, p.side}, out{q.exit_rest, q.side};
+  s.exit_angle = q.out ? q.exit_angle : kNaN;
+  const CutPlace in{p.entry_rest, p.side}, out = q.out ? CutPlace{q.exit_rest, q.side} : in;
   // Two stumps lie apart in the open clamp, and that space is no part of a bite.
   const bool stumps = scene.lumen && scene.edges[0].rim.empty();
   const double across = stumps && whole ? s.bite[0] + s.bite[1] : cut.across(in, out);
@@ -43,7 +43,7 @@ Stitch from_passes(const TissueObservation& t, int a, int b, const CutLine& cut,
   s.torn = std::max(p.torn, q.torn);
   s.lost = is_lost(p) || is_lost(q);
   s.joins = whole && p.state == PassObservation::State::thread && q.state == PassObservation::State::thread;
-  if (b >= 0 || !whole) s.inner[0] = std::abs(p.bite_exit);
+  if (b >= 0 || (!whole && p.out)) s.inner[0] = std::abs(p.bite_exit);
   if (b >= 0) s.inner[1] = std::abs(q.bite_entry);
   s.layers = layers_of(p.depth_share <= q.depth_share ? p : q, scene);
   return s;
@@ -107,7 +107,7 @@ std::vector<Stitch> stitches_of(const LapseRules& rules, const TissueObservation
   const CutLine cut(scene);
   std::vector<Stitch> stitches;
   for (int k = 0; k < t.n_passes; ++k) {
-    if (!t.passes[static_cast<std::size_t>(k)].out) continue;
+    if (const PassObservation& p = t.passes[static_cast<std::size_t>(k)]; !p.out && p.torn <= rules.tear) continue;
     if (std::any_of(pairs.begin(), pairs.end(), [k](const auto& pair) { return pair[1] == k; })) continue;
     const auto pair = std::find_if(pairs.begin(), pairs.end(), [k](const auto& one) { return one[0] == k; });
     const auto came_in = std::find_if(stitches.begin(), stitches.end(), [k](const Stitch& s) { return std::max(s.first, s.second) == k - 1; });

@@ -43,7 +43,7 @@ struct Stitch {
   double time = 0.0;              // [s], of the last puncture
   double tear_time = std::numeric_limits<double>::quiet_NaN();  // [s], when it had torn as far as counts
   double bite[2] = {0, 0};        // [m], distance from the cut on either side; the second NaN for half a stitch
-  double entry_angle = 0.0, exit_angle = 0.0;  // [rad], of the needle against the surface
+  double entry_angle = 0.0, exit_angle = 0.0;  // [rad], of the needle against the surface; NaN where it did not come out
   double obliquity = 0.0;         // [rad], of the line from entry to exit against the normal of the cut, seen from above; NaN for half a stitch
   double depth = 0.0;             // share of the thickness, the least of both sides
   double position = 0.0;          // [m], along the cut
@@ -71,7 +71,7 @@ struct Lapse {
 
 /// How many there are of this name.
 double count_of(const std::vector<Lapse>& lapses, std::string_view name);
-/// `pairs`: passes of the stitches. All other passes that came out stand alone, except the needle's way on through the back wall: it is part of the stitch
+/// `pairs`: passes of the stitches. All other passes that came out, or have torn the wall as far as counts without, stand alone, except the needle's way on through the back wall: it is part of the stitch
 /// with which the needle came into the lumen, and that lapse, but no bite that was meant.
 std::vector<Stitch> stitches_of(const LapseRules& rules, const TissueObservation& tissue, const std::vector<std::array<int, 2>>& pairs, const std::vector<double>& pass_time,
                                 const TissueDescription& scene);

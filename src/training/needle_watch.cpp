@@ -225,6 +225,7 @@ void NeedleWatch::keep_times(const TissueObservation& t, double time) {
     if (t.passes[k].out && !was_out) pass_time_[k] = time;
     if (t.passes[k].torn <= task_.lapses.tear) tear_time_[k] = kNaN;
     else if (std::isnan(tear_time_[k])) tear_time_[k] = time;
+    if (!t.passes[k].out) pass_time_[k] = std::isnan(tear_time_[k]) ? 0.0 : tear_time_[k];
   }
 }
 

@@ -316,6 +316,23 @@ TEST(Lapse, OfWhatWasPulledOutOnlyATearIsLeft) {
   EXPECT_STREQ(found[0].name, "wall-tear");
 }
 
+TEST(Lapse, AWallTornByAPointThatNeverCameOutIsTold) {
+  auto t = good();
+  PassObservation& p = t.passes[static_cast<std::size_t>(t.n_passes++)];
+  p.state = PassObservation::State::torn;
+  p.entry_rest = Vec3(1.6e-3, -0.1e-3, 0.1e-3);
+  p.bite_entry = 0.1e-3;
+  p.torn = 10e-6;
+  EXPECT_TRUE(lapses(t).empty()) << "no more than counts";
+  p.torn = 0.1e-3;
+  const auto found = lapses(t);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_STREQ(found[0].name, "wall-tear");
+  const Stitch s = stitches_in(t, card()).back();
+  EXPECT_NEAR(s.position, 1.6e-3, 1e-9) << "where it went in";
+  EXPECT_TRUE(s.lost && !s.joins && std::isnan(s.exit_angle) && std::isnan(s.inner[0]));
+}
+
 TissueObservation round_the_tube(const std::vector<double>& degrees, double skew = 0.0) {
   TissueObservation t;
   for (const double d : degrees) {

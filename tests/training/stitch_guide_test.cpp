@@ -38,7 +38,7 @@ TissueDescription vessel() {
   return t;
 }
 
-NeedleTask task(const std::string& name) { return *load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + name + "/task.yaml").needle; }
+NeedleTask task(const std::string& name) { return *load_task(FILUM_SOURCE_DIR "/curricula/" + name + "/task.yaml").needle; }
 
 TEST(StitchGuide, StandsTwoThicknessesFromBothEdgesRoundTheVessel) {
   const TissueDescription t = vessel();

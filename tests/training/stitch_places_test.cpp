@@ -16,7 +16,7 @@ namespace stitch_places_test {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::vector<NeedleGoal> goals_of(const std::string& task) {
-  return load_task(std::string(FILUM_SOURCE_DIR) + "/curricula/" + task + "/task.yaml").needle->goals;
+  return load_task(FILUM_SOURCE_DIR "/curricula/" + task + "/task.yaml").needle->goals;
 }
 
 /// As scenes of two stumps have it: 90 degrees lie on top.
