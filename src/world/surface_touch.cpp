@@ -56,6 +56,11 @@ TouchFooting find_footing(const VesselWall& wall, const WallState& w, const Surf
   return f;
 }
 
+double sinks_past(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const Vec3& before, const Vec3& now) noexcept {
+  const bool through = (wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough;
+  return through ? std::max(0.0, (before - now).dot(touch.normal)) : 0.0;
+}
+
 bool stay_above(const VesselWall& wall, const WallState& w, SurfaceTouch& touch, const Vec3& x) noexcept {
   const Vec3 high = x + kAbove * touch.normal;
   for (const double until : {kCloseBy, 1.0}) {

@@ -34,6 +34,8 @@ TouchFooting find_footing(const VesselWall& wall, const WallState& w, const Surf
 void lean_touch(VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const RodTether& t, const TouchLaw& law) noexcept;
 /// Has the strand at x gone so far past its place that the surface nearest to it may be another one? It is drawn back the way it came.
 bool is_deep(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const TouchLaw& law, const Vec3& x) noexcept;
+/// [m], by which a strand that is more than kThrough below its place has gone on into the tissue on its way from `before` to `now`; 0: it has not, or is not so deep.
+double sinks_past(const VesselWall& wall, const WallState& w, const SurfaceTouch& touch, const Vec3& before, const Vec3& now) noexcept;
 /// The place of one that cannot slide goes along over it: where its way out, along the normal, leaves the tissue on the side that it came from. False: nowhere
 /// within a millimetre, so that it is not behind anything.
 bool stay_above(const VesselWall& wall, const WallState& w, SurfaceTouch& touch, const Vec3& x) noexcept;

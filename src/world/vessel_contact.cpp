@@ -64,8 +64,7 @@ double VesselContact::sinks(const VesselWall& wall, const WallState& w, const To
   double most = 0.0;
   for (int k = 0; k < s.n; ++k) {
     const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
-    const Vec3 now = at_arc(thread, touch.arc);
-    if ((wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough) most = std::max(most, (was_at(thread, touch.arc) - now).dot(touch.normal));
+    most = std::max(most, sinks_past(wall, w, touch, was_at(thread, touch.arc), at_arc(thread, touch.arc)));
   }
   return most;
 }

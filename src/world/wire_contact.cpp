@@ -50,8 +50,8 @@ double WireContact::sinks(const VesselWall& wall, const WallState& w, const Touc
   double most = 0.0;
   for (int k = 0; k < s.n; ++k) {
     const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
-    const Vec3 p_N = needle_.point(touch.arc), now = X_WN * p_N;
-    if ((wall.on_triangle(w, touch.at) - now).dot(touch.normal) > kThrough) most = std::max(most, (before_ * p_N - now).dot(touch.normal));
+    const Vec3 p_N = needle_.point(touch.arc);
+    most = std::max(most, sinks_past(wall, w, touch, before_ * p_N, X_WN * p_N));
   }
   return most;
 }
