@@ -65,21 +65,15 @@ bool same_bytes(const std::string& a, const std::string& b) {
   return first && second && std::equal(Bytes(first), {}, Bytes(second), {});
 }
 
-/// The files of one export: written beside their places, and put there when all of them are on disk.
+/// The files of one export to a dataset, which others share (NewFiles has a folder aside instead): written beside their places, and put there when all of them are on disk.
 class Files {
  public:
   /// `own`: folder of this recording's files; what lies outside it is shared by all of the dataset.
-  Files(const fs::path& root, fs::path own) : own_(std::move(own)) {
-    for (fs::path made = own_; !made.empty() && !is_there(made); made = made.parent_path()) made_.push_back(made);
-    std::error_code error;
-    fs::create_directories(own_, error);
-    if (!is_folder(own_)) throw InputError(root.string(), "export", error.message(), "a folder that can be made");
-  }
+  Files(const fs::path& root, fs::path own) : own_(std::move(own), root.string()) {}
   /// Leaves nothing that was not put in its place.
   ~Files() {
     std::error_code ignored;
     for (const std::string& place : places_) fs::remove(part(place), ignored);
-    for (const fs::path& made : made_) fs::remove(made, ignored);  // those that are empty: where nothing was put
   }
   Files(const Files&) = delete;
   Files& operator=(const Files&) = delete;
@@ -90,16 +84,15 @@ class Files {
   /// The same recording again is no other one: its files have the same bytes.
   std::vector<std::string> put() const {
     for (const std::string& place : places_)
-      if (fs::path(place).parent_path() == own_ && is_there(place) && !same_bytes(place, part(place)))
+      if (fs::path(place).parent_path() == own_.path() && is_there(place) && !same_bytes(place, part(place)))
         throw InputError(place, "export", "a file of another recording or program", "a folder without it: an export is never written over");
     for (const std::string& place : places_) fs::rename(part(place), place);
     return places_;
   }
 
  private:
-  fs::path own_;
+  MadeFolder own_;
   std::vector<std::string> places_;
-  std::vector<fs::path> made_;  // for this, innermost first
 };
 
 class TextOut {

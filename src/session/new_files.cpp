@@ -17,14 +17,22 @@ void require_unused(const fs::path& path) {
   if (is_there(path)) throw InputError(path.string(), "export", "a file that exists", "a folder without it: an export is never written over");
 }
 
-NewFiles::NewFiles(const std::string& folder, std::vector<std::string> names, std::string shared) : folder_(folder), names_(std::move(names)) {
+MadeFolder::MadeFolder(fs::path folder, const std::string& asked_for) : folder_(std::move(folder)) {
   for (fs::path made = folder_; !made.empty() && !is_there(made); made = made.parent_path()) made_.push_back(made);
   std::error_code error;
   fs::create_directories(folder_, error);
-  if (!is_folder(folder_)) throw InputError(folder, "export", error.message(), "a folder that can be made");
-  for (const std::string& name : names_) require_unused(folder_ / name);
+  if (!is_folder(folder_)) throw InputError(asked_for, "export", error.message(), "a folder that can be made");
+}
+
+MadeFolder::~MadeFolder() {
+  std::error_code ignored;
+  for (const fs::path& made : made_) fs::remove(made, ignored);
+}
+
+NewFiles::NewFiles(const std::string& folder, std::vector<std::string> names, std::string shared) : folder_(folder, folder), names_(std::move(names)) {
+  for (const std::string& name : names_) require_unused(place(name));
   names_.push_back(std::move(shared));
-  std::string aside = (folder_ / ".export-XXXXXX").string();
+  std::string aside = (folder_.path() / ".export-XXXXXX").string();
   if (::mkdtemp(aside.data()) == nullptr) {
     if (errno == ENOSPC) throw_unwritten(folder);
     throw InputError(folder, "export", "a write error", "a folder that can be written");
@@ -35,7 +43,6 @@ NewFiles::NewFiles(const std::string& folder, std::vector<std::string> names, st
 NewFiles::~NewFiles() {
   std::error_code ignored;
   fs::remove_all(aside_, ignored);
-  for (const fs::path& made : made_) fs::remove(made, ignored);  // those that are empty: where nothing was put
 }
 
 std::vector<std::string> NewFiles::put() {

@@ -13,6 +13,22 @@ namespace filum {
 /// Throws InputError where `path` is taken.
 void require_unused(const std::filesystem::path& path);
 
+/// A folder for new files, made with those above it where they are not there. What was made for it and is empty at the end, where nothing was put, is taken away.
+class MadeFolder {
+ public:
+  /// Throws InputError, naming `asked_for`, where it cannot be made.
+  MadeFolder(std::filesystem::path folder, const std::string& asked_for);
+  ~MadeFolder();
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+
+  const std::filesystem::path& path() const noexcept { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::filesystem::path> made_;  // innermost first
+};
+
 class NewFiles {
  public:
   /// For `names` in `folder`, which is made, and `shared`, which may be there already and is then replaced. Throws InputError where that cannot be, or where one of the
@@ -25,14 +41,14 @@ class NewFiles {
 
   /// Where a file is written until all are whole, and where it will be.
   std::string aside(const std::string& name) const { return (aside_ / name).string(); }
-  std::string place(const std::string& name) const { return (folder_ / name).string(); }
+  std::string place(const std::string& name) const { return (folder_.path() / name).string(); }
   /// Puts all in their places, and says which these are.
   std::vector<std::string> put();
 
  private:
-  std::filesystem::path folder_, aside_;
+  MadeFolder folder_;
+  std::filesystem::path aside_;
   std::vector<std::string> names_;
-  std::vector<std::filesystem::path> made_;  // the folder and those above it, for this, innermost first
 };
 
 }  // namespace filum
