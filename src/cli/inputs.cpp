@@ -107,6 +107,7 @@ bool names_hands(const std::string& input) {
 
 InputDevices open_inputs(const std::string& input, const std::string& root, const std::string& task, double motion_scale, const std::string& calibration) {
   if (!calibration.empty() && input.find("serial:") == std::string::npos) throw InputError("--forceps", "calibration", calibration, "--input serial:PATH beside it");
+  if (motion_scale != 1.0 && !names_hands(input)) throw InputError("--motion-scale", "input", input, "one that hands move: serial:PATH, haptic:PORT or igtl:PORT");
   if (names_hands(input)) return open_hands(input, motion_scale, calibration_file(calibration, root), "--input");
   InputDevices result;
   result.scripted = true;

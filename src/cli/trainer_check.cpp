@@ -48,6 +48,7 @@ void check_camera(const std::string& source) {
 /// Opened and let go again: the sessions open them anew.
 void check_devices(const TrainerOptions& options) {
   if (!options.calibration.empty() && options.serial_port.empty()) throw InputError("--forceps", "calibration", options.calibration, "--serial PATH beside it");
+  if (options.motion_scale != 1.0 && options.hands.empty()) throw InputError("--motion-scale", "devices", "none with --hands", "--hands haptic:PORT or igtl:PORT beside it");
   const LiveDevices devices{options.serial_port, options.calibration, options.hands, options.motion_scale};
   if (devices.any()) open_live_inputs(devices, options.root);
 }

@@ -11,9 +11,9 @@ namespace filum {
 namespace inputs_test {
 
 /// What the refusal of an input says; empty if it was taken.
-std::string refusal(const std::string& input, const std::string& calibration = "", const std::string& task = "tip-hold") {
+std::string refusal(const std::string& input, const std::string& calibration = "", const std::string& task = "tip-hold", double motion_scale = 1.0) {
   try {
-    open_inputs(input, FILUM_SOURCE_DIR, task, 1.0, calibration);
+    open_inputs(input, FILUM_SOURCE_DIR, task, motion_scale, calibration);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -78,6 +78,7 @@ TEST(Inputs, RefusesWhatItCannotOpen) {
   EXPECT_TRUE(says(refusal(FILUM_SOURCE_DIR), "expected demo, serial:PATH")) << "a folder";
   EXPECT_TRUE(says(refusal("demo", "", "no-such-task"), "a task with a demonstration"));
   EXPECT_TRUE(says(refusal("demo", "forceps.yaml"), "--input serial:PATH beside it")) << "a calibration needs a handle";
+  EXPECT_TRUE(says(refusal("demo", "", "tip-hold", 0.5), "--motion-scale: input: found demo")) << "a scale needs hands";
   EXPECT_TRUE(says(refusal("serial:/none", "/none.yaml"), "/none.yaml")) << "the calibration is read first";
 }
 

@@ -70,6 +70,7 @@ TEST(Train, WhatItCannotServeFromIsNamedBeforeItServes) {
   expect_train_refused(folder, {"--model", folder.file("model.yaml")}, {"--model", "model.yaml", "expected a model that a task can take"});
   expect_train_refused(folder, {"--hands", "mouse:1"}, {"--hands", "mouse:1", "haptic:PORT"});
   expect_train_refused(folder, {"--motion-scale", "0"}, {"--motion-scale"});
+  expect_train_refused(folder, {"--motion-scale", "0.5"}, {"--motion-scale", "--hands"});
 }
 
 TEST(Train, FilesAndPortsThatAreNotThereAreNamedBeforeItServes) {
