@@ -11,9 +11,7 @@ namespace filum {
 namespace {
 
 constexpr int kEvery = 5;                        // steps between two looks: 10 ms
-constexpr double kBeside = kTrackReach + 0.1e-3; // [m], of a track: there a loop that is tied passes through on its way into its bite
-constexpr double kPatience = 3.0;                // looks on end that have found a place there before it is drawn; elsewhere one
-constexpr double kJustOutside = 1e-6;            // [m], of a reach
+constexpr double kBeside = kTrackReach + 0.1e-3; // [m], of a track: a tight stitch that is pulled lies a little farther in
 constexpr double kSwage = 0.3e-3;                // [m], of thread that goes where the needle takes it
 constexpr double kSamePlace = 0.2e-3;            // [m], by which a place may have gone between two looks
 constexpr double kSpacing = 50e-6;               // [m], of samples along a stretch; less where less counts as deep, or the middle of a wall would be missed
@@ -31,15 +29,15 @@ int StrayThread::step(const VesselWall& wall, const WallState& w, const TrackSta
   if (++strays.unseen < kEvery) return 0;
   const StageScope stage("stray thread");
   now_.n = 0;
-  const TrackReaches reaches(tracks, thread), beside(tracks, thread, kBeside);
-  look({wall, w, thread, strays, beside, arc_of_end(thread)}, reaches, s);
+  look({wall, w, thread, strays, arc_of_end(thread)}, tracks, s);
   strays = now_;
   return given_;
 }
 
 /// Along the thread, up to where the needle takes it along.
-void StrayThread::look(const Scene& c, const TrackReaches& reaches, TouchState& s) noexcept {
+void StrayThread::look(const Scene& c, const TrackState& tracks, TouchState& s) noexcept {
   const RodState& thread = c.thread;
+  const TrackReaches reaches(tracks, thread, kBeside);
   const TrackReach* held = nullptr;  // by which the walk has just come
   bool begins = true;                // a piece
   const double last = c.whole - kSwage;
@@ -92,39 +90,27 @@ void StrayThread::leave(const Scene& c, const End& end, TouchState& s) noexcept 
   if (!in_) return;
   const End from = *in_;
   in_.reset();
-  if (!lies_deep(c, from, end)) return;
+  if (!lies_deep(c, from.arc, end.arc)) return;
   for (int k = 0; k < s.n; ++k) {
     const SurfaceTouch& touch = s.touches[static_cast<std::size_t>(k)];
     below_[static_cast<std::size_t>(k)] = (c.wall.on_triangle(c.w, touch.at) - at_arc(c.thread, touch.arc)).dot(touch.normal);
   }
-  const Sample* stray = nullptr;  // the first
-  double looks = 0.0;
-  bool due = false;
-  for (const Sample& q : samples()) {
-    if (q.depth <= deep_ || drawn(q, s)) continue;
-    if (stray == nullptr) stray = &q;
-    const double before = looks_before(c, q);
-    looks = std::max(looks, before);
-    due = due || before >= (c.beside.hold(q.arc) ? kPatience : 1.0);
-  }
-  if (stray == nullptr) return;
-  if (now_.n < kMostStrays) now_.places[static_cast<std::size_t>(now_.n++)] = {c.whole - stray->arc, looks + 1.0, stray->x};
-  if (!due) return;
+  const auto stray = std::find_if(samples().begin(), samples().end(), [&](const Sample& q) { return q.depth > deep_ && !drawn(q, s); });
+  if (stray == samples().end()) return;
+  if (now_.n < kMostStrays) now_.places[static_cast<std::size_t>(now_.n++)] = {c.whole - stray->arc, stray->x};
+  if (std::none_of(stray, samples().end(), [&](const Sample& q) { return was_seen(c, q); })) return;
   const Vec3 way = way_out(from, end, s);
   if (way != Vec3::Zero()) draw(c, way, s);
 }
 
-/// Samples of a stretch. Where it goes on into a reach it is in the tissue to its very end, which is sampled; else its ends lie in the surface.
-bool StrayThread::lies_deep(const Scene& c, const End& begin, const End& end) noexcept {
+bool StrayThread::lies_deep(const Scene& c, double from, double to) noexcept {
   n_ = 0;
-  const double from = begin.arc, to = end.mouth ? end.arc - kJustOutside : end.arc;
-  if (!begin.mouth && !end.mouth && to - from < 2.0 * deep_) return false;  // no place of it is farther from both its ends
-  const double gaps = std::clamp(std::ceil((to - from) / std::min(kSpacing, deep_)), 1.0, static_cast<double>(kMostSamples - 1));
-  const double first = begin.mouth ? 0.0 : end.mouth ? 1.0 : 0.5, last = end.mouth ? gaps : gaps - 0.5;
+  if (to - from < 2.0 * deep_) return false;  // no place of it is farther from both its ends
+  const double n = std::min(std::ceil((to - from) / std::min(kSpacing, deep_)), static_cast<double>(kMostSamples));
   double deepest = 0.0;
-  for (double k = first; k <= last; k += 1.0) {
-    Sample& q = samples_[n_++];
-    q.arc = from + k / gaps * (to - from);
+  while (static_cast<double>(n_) < n) {
+    Sample& q = samples_[n_];
+    q.arc = from + (static_cast<double>(n_++) + 0.5) / n * (to - from);
     q.x = at_arc(c.thread, q.arc);
     q.depth = 0.0;
     if (c.wall.nearest(c.w, q.x, deep_).found) continue;  // asked first: to look farther costs more
@@ -137,18 +123,14 @@ bool StrayThread::lies_deep(const Scene& c, const End& begin, const End& end) no
 
 /// Does no more of the tissue lie beyond it, along the line from its nearest side, than makes that its share of the thickness? Not so where it cuts across a rim.
 bool StrayThread::amid(const Scene& c, const Vec3& x, const WallCrossing& near) noexcept {
-  const double beyond = (1.0 / kAmidShare - 1.0) * -near.fraction;
+  const double beyond = (1.0 / kDeepShare - 1.0) * -near.fraction;
   return c.wall.crossing(c.w, x, x - beyond * near.away).found;
 }
 
-/// How many on end before this one have found it there, by the thread or by the place?
-double StrayThread::looks_before(const Scene& c, const Sample& q) noexcept {
-  double looks = 0.0;
-  for (int k = 0; k < c.before.n; ++k) {
-    const StrayPlace& p = c.before.places[static_cast<std::size_t>(k)];
-    if (std::abs(c.whole - q.arc - p.strand) < kSamePlace || (q.x - p.x).norm() < kSamePlace) looks = std::max(looks, p.looks);
-  }
-  return looks;
+/// Was it there in the last look, by the thread or by the place?
+bool StrayThread::was_seen(const Scene& c, const Sample& q) const noexcept {
+  return std::any_of(c.before.places.begin(), c.before.places.begin() + c.before.n,
+                     [&](const StrayPlace& p) { return std::abs(c.whole - q.arc - p.strand) < kSamePlace || (q.x - p.x).norm() < kSamePlace; });
 }
 
 /// Does a touch near by draw it back, and none the other way?

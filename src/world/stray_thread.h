@@ -2,12 +2,12 @@
 // Thread that has come to lie deep in the tissue where no track leads and no touch draws it out, as when it is dragged out of the reach of a track or is left by one that tears out:
 // it is given touches (surface_touch.h) that lead it out again.
 //
-// Deep is what has no less than kAmidShare of the tissue's thickness there on either side, and lies no less than kDeepShare of that as first made from the nearest: what is pressed into a
-// surface or cuts across a rim does not. A stretch lies in the tissue from where the thread crosses the surface inwards, or leaves a track's reach within it, to where it comes out or into
-// another reach. What is deep in it and was so in the look before gets touches; within 0.1 mm of a reach after four looks only, since a loop that is tied comes by there on its way into
-// its bite. All of it goes out on one side: where a touch already draws some of it; else where the mouth is that it comes from; else where the thread comes
+// Deep is what has no less than kDeepShare of the tissue's thickness on either side, there and as first made: what is pressed into a surface or cuts across a rim has not.
+// A stretch lies in the tissue from where the thread crosses the surface inwards, or leaves a track's reach within it, to where it comes out or into another reach. What is deep in it and was
+// so in the look before gets touches. All of it goes out on one side: where a touch already draws some of it; else where the mouth is that it comes from; else where the thread comes
 // out next to its deepest place. Touches in it that push the other way end. Thread that is pulled harder than touches bear (90 mN/mm) stays, and they with it.
-// Neglects: the needle, and cuts: in truth thread that is pulled through tissue parts it. Test: stray_thread_test.
+// Neglects: the needle; a stretch's very ends, of which that at a reach is its deepest place (sampled, a loop tied tight is drawn out of its tissue: DECISIONS.md); cuts: in truth thread
+// that is pulled through tissue parts it. Test: stray_thread_test.
 
 #include <array>
 #include <optional>
@@ -40,19 +40,17 @@ class StrayThread {
     const WallState& w;
     const RodState& thread;
     const StrayState& before;  // the last look's
-    const TrackReaches& beside;
     double whole;              // [m], arc of the swage
   };
-  static constexpr double kAmidShare = 0.3;  // of the tissue's thickness there
-  static constexpr double kDeepShare = 0.2;  // of that as first made: a wall pressed thin counts, a dent in a surface does not
+  static constexpr double kDeepShare = 0.3;  // of the tissue's thickness
   static constexpr std::size_t kMostSamples = 64;
 
-  void look(const Scene& c, const TrackReaches& reaches, TouchState& s) noexcept;
+  void look(const Scene& c, const TrackState& tracks, TouchState& s) noexcept;
   void pass(const Scene& c, int edge, double arc, double from, double to, TouchState& s) noexcept;
   void leave(const Scene& c, const End& end, TouchState& s) noexcept;
-  bool lies_deep(const Scene& c, const End& begin, const End& end) noexcept;
+  bool lies_deep(const Scene& c, double from, double to) noexcept;
   static bool amid(const Scene& c, const Vec3& x, const WallCrossing& near) noexcept;
-  static double looks_before(const Scene& c, const Sample& q) noexcept;
+  bool was_seen(const Scene& c, const Sample& q) const noexcept;
   bool drawn(const Sample& q, const TouchState& s) const noexcept;
   Vec3 way_out(const End& from, const End& to, const TouchState& s) const noexcept;
   void draw(const Scene& c, const Vec3& way, TouchState& s) noexcept;

@@ -284,7 +284,7 @@ std::uint64_t hash_vessel(const VesselState& s) noexcept {
     if (s.grips[i].n > 0) h = hash_grip(s.grips[i], h + i);  // likewise
   for (int k = 0; k < s.strays.n; ++k) {  // likewise; when they are looked for again goes by the number of steps
     const StrayPlace& place = s.strays.places[static_cast<std::size_t>(k)];
-    const std::array<double, 5> row = {place.strand, place.looks, place.x.x(), place.x.y(), place.x.z()};
+    const std::array<double, 4> row = {place.strand, place.x.x(), place.x.y(), place.x.z()};
     h = hash_bytes(row.data(), sizeof(row), h);
   }
   const std::array<double, 9> row = {static_cast<double>(t.open), static_cast<double>(t.point.kind), t.point.threshold, t.point.force,

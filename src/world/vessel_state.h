@@ -29,7 +29,6 @@ struct TouchState {
 /// Thread that lay deep in the tissue when it was last looked for (stray_thread.h). Part of the state.
 struct StrayPlace {
   double strand = 0.0;         // [m], behind the swage
-  double looks = 0.0;          // on end that have found it
   Vec3 x = Vec3::Zero();       // [m]
 };
 inline constexpr int kMostStrays = 16;

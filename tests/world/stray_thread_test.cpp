@@ -32,16 +32,6 @@ struct Tube {
     look(thread);
     return look(thread);
   }
-  /// Across the wall, 0.4 to 0.5 mm along the thread of within().
-  NeedleTrack& track(double radius) {
-    NeedleTrack& track = tracks.tracks[0];
-    track.n = 2;
-    track.knots[0].at = track.knots[1].at = wall.nearest(w, {0, radius, 1e-3}, 0.1e-3).point;
-    track.knots[0].strand = -1.6e-3;
-    track.knots[1].strand = -1.5e-3;
-    tracks.n = 1;
-    return track;
-  }
   const SurfaceTouch& touch(int k) const { return touches.touches[static_cast<std::size_t>(k)]; }
 };
 
@@ -99,7 +89,7 @@ TEST(StrayThread, WhatLiesOnTheSurfaceIsLeftAlone) {
 
 /// Beside the cut edge, which is nearest: behind it lies the length of the tube.
 TEST(StrayThread, WhatCutsAcrossARimIsLeftAlone) {
-  for (const double from_edge : {28e-6, 300e-6}) {
+  for (const double from_edge : {32e-6, 300e-6}) {
     Tube t;
     const double z = 3e-3 - from_edge, y = kOuter - 33e-6;
     EXPECT_EQ(t.lead_out(straight({-2e-3, y, z}, {2e-3, y, z}, 21)) > 0, from_edge > 0.1e-3) << from_edge;
@@ -112,30 +102,19 @@ TEST(StrayThread, WhatIsDraggedOutOfATrackIsDrawnOutAtItsMouth) {
   const RodState thread = within();
   EXPECT_EQ(t.lead_out(thread), 0) << "nothing tells where it came in";
   for (const double radius : {kOuter, 0.35e-3}) {
-    t.track(radius);
+    NeedleTrack& track = t.tracks.tracks[0];
+    track.n = 2;
+    track.knots[0].at = track.knots[1].at = t.wall.nearest(t.w, {0, radius, 1e-3}, 0.1e-3).point;
+    track.knots[0].strand = -1.6e-3;
+    track.knots[1].strand = -1.5e-3;  // 0.4 to 0.5 mm along the thread
+    t.tracks.n = 1;
     t.touches.n = 0;
     t.strays = {};
     ASSERT_GT(t.lead_out(thread), 5);
     for (int k = 0; k < t.touches.n; ++k) {
-      EXPECT_GT(std::abs(t.touch(k).arc - 0.45e-3), 0.05e-3 + kTrackReach - 1e-9) << "left alone where the track holds it";
+      EXPECT_GT(std::abs(t.touch(k).arc - 0.45e-3), 0.05e-3 + kTrackReach) << "left alone where the track holds it";
       EXPECT_GT(t.touch(k).normal.y() * (radius == kOuter ? 1.0 : -1.0), 0.9) << radius;
     }
-  }
-}
-
-/// As of a loop that is tied: at the end of its track's reach, which is sampled, it is 40 um deep, and out of the wall 60 um farther on.
-TEST(StrayThread, BesideATrackItIsDrawnInTheFourthLook) {
-  Tube t;
-  constexpr double kRise = 2.0 / 3.0, kReachEnds = 0.5e-3;  // [m], of the thread's arc
-  const Vec3 along(0, kRise, std::sqrt(1.0 - kRise * kRise)), from(0, kOuter - (kReachEnds + 60e-6) * kRise, 0.5e-3);
-  const RodState thread = straight(from, from + 2e-3 * along, 41);
-  NeedleTrack& track = t.track(kOuter);
-  track.knots[0].strand = track.knots[1].strand = kReachEnds - kTrackReach - 2e-3;
-  for (int k = 0; k < 3; ++k) EXPECT_EQ(t.look(thread), 0) << k;
-  ASSERT_GT(t.look(thread), 0);
-  for (int k = 0; k < t.touches.n; ++k) {
-    EXPECT_NEAR(t.touch(k).arc, kReachEnds, 0.1e-3);
-    EXPECT_GT(t.touch(k).normal.y(), 0.9);
   }
 }
 
