@@ -6,8 +6,7 @@
 // A stretch lies in the tissue from where the thread crosses the surface inwards, or leaves a track's reach within it, to where it comes out or into another reach. What is deep in it and was
 // so in the look before gets touches. All of it goes out on one side: where a touch already draws some of it; else where the mouth is that it comes from; else where the thread comes
 // out next to its deepest place. Touches in it that push the other way end. Thread that is pulled harder than touches bear (90 mN/mm) stays, and they with it.
-// Neglects: the needle; a stretch's very ends, of which that at a reach is its deepest place (sampled, a loop tied tight is drawn out of its tissue: DECISIONS.md); cuts: in truth thread
-// that is pulled through tissue parts it. Test: stray_thread_test.
+// Neglects: the needle; a stretch's very ends, of which that at a reach is its deepest place (DECISIONS.md); cuts: in truth thread that is pulled through tissue parts it. Test: stray_thread_test.
 
 #include <array>
 #include <optional>
